@@ -1,0 +1,30 @@
+# Everything comes from the system: see the package list in cmake/debian-packages.txt.
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(xsimd 8.1 REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(Threads REQUIRED)
+
+# The default scheduler is required, the other ones are used where they are found.
+if(LANCET_SCHEDULER STREQUAL "tbb")
+  find_package(TBB 2021 REQUIRED)
+else()
+  find_package(TBB 2021 QUIET)
+endif()
+if(LANCET_SCHEDULER STREQUAL "openmp")
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+else()
+  find_package(OpenMP QUIET COMPONENTS CXX)
+endif()
+
+if(LANCET_BUILD_EXPERIMENTS OR LANCET_BUILD_BENCHMARKS)
+  find_package(CLI11 2.1 REQUIRED)
+endif()
+if(LANCET_BUILD_BENCHMARKS)
+  find_package(benchmark 1.7 REQUIRED)
+endif()
+if(LANCET_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()

@@ -1,0 +1,22 @@
+# LANCET_ISA: the instruction sets that are compiled in. `scalar`, the reference, always is. Which one runs is chosen
+# at start-up, and the environment variable LANCET_ISA forces one.
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  set(lancet_isa_available sse2 avx2 avx512)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+  set(lancet_isa_available neon)
+else()
+  set(lancet_isa_available "")
+endif()
+set(LANCET_ISA "${lancet_isa_available}" CACHE STRING "Instruction sets to compile in, beside scalar")
+foreach(isa IN LISTS LANCET_ISA)
+  if(NOT isa IN_LIST lancet_isa_available)
+    message(FATAL_ERROR "LANCET_ISA names '${isa}'; this target can have: ${lancet_isa_available}")
+  endif()
+endforeach()
+
+set(lancet_flags_scalar -fno-tree-vectorize -fno-tree-slp-vectorize)
+set(lancet_flags_sse2 -msse2)
+set(lancet_flags_avx2 -mavx2 -mfma)
+set(lancet_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma)
+set(lancet_flags_neon "")
