@@ -20,3 +20,7 @@ set(lancet_flags_sse2 -msse2)
 set(lancet_flags_avx2 -mavx2 -mfma)
 set(lancet_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma)
 set(lancet_flags_neon "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12's own AVX-512 header reads variables that it leaves uninitialised on purpose.
+  list(APPEND lancet_flags_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/kernels/rotation/rotation_kernels.hpp"
+
+namespace lancet::kernels {
+
+/// All kernels of one instruction set and scalar type, as pointers to out-of-line functions over a range of blocks or
+/// batches. Asked for once, when an object is built; no dispatch happens in a loop.
+template <class Real>
+struct KernelSet {
+    InstructionSet instruction_set;
+    int width;  ///< lanes of a batch
+    RotationKernels<Real> rotation;
+};
+
+/// The kernels of an instruction set, for Real = float or double. Throws Error unless it is compiled in and executable.
+template <class Real>
+const KernelSet<Real>& kernel_set(InstructionSet instruction_set);
+
+}  // namespace lancet::kernels
