@@ -12,10 +12,10 @@ namespace lancet::experiments {
 
 /// A program to run.
 struct Command {
-    std::filesystem::path program;                                 ///< looked up in PATH when it has no slash
-    std::vector<std::string> arguments;                            ///< without the program's own name
-    std::vector<std::pair<std::string, std::string>> environment;  ///< set on top of the caller's own environment
-    std::optional<std::chrono::milliseconds> timeout;              ///< after this time the program is killed
+    std::filesystem::path program{};                                 ///< looked up in PATH when it has no slash
+    std::vector<std::string> arguments{};                            ///< without the program's own name
+    std::vector<std::pair<std::string, std::string>> environment{};  ///< set on top of the caller's own environment
+    std::optional<std::chrono::milliseconds> timeout{};              ///< after this time the program is killed
 };
 
 /// It ended by itself, with this exit code.

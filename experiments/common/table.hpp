@@ -13,9 +13,9 @@ namespace lancet::experiments {
 
 /// A column of a result table.
 struct Column {
-    std::string key;             ///< its name in CSV and JSON, such as ms_per_step
-    std::string title;           ///< its heading in the printed table, such as "time/step"
-    std::string unit;            ///< under the heading, such as "ms"; may be empty
+    std::string key{};           ///< its name in CSV and JSON, such as ms_per_step
+    std::string title{};         ///< its heading in the printed table, such as "time/step"
+    std::string unit{};          ///< under the heading, such as "ms"; may be empty
     int significant_digits = 3;  ///< of numbers in the printed table; files carry all digits
     bool printed = true;         ///< whether the printed table shows the column; files always do
 };
