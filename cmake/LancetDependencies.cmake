@@ -1,11 +1,22 @@
 # Everything comes from the system: see the package list in cmake/debian-packages.txt.
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(xsimd 8.1 REQUIRED)
+include(LancetHostHeaders)
+
+# Headers only: the same ones serve every processor.
+lancet_find_header_package(xsimd 8.1 TARGET xsimd HEADER xsimd/xsimd.hpp)
+lancet_find_header_package(Eigen3 3.4 TARGET Eigen3::Eigen HEADER Eigen/Core SUBFOLDER eigen3)
+if(LANCET_BUILD_TESTS)
+  lancet_find_googletest(1.12)
+endif()
+find_package(Threads REQUIRED)
+
+if(LANCET_KERNELS_ONLY)
+  return()
+endif()
+
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
-find_package(Threads REQUIRED)
 
 # The default scheduler is required, the other ones are used where they are found.
 if(LANCET_SCHEDULER STREQUAL "tbb")
@@ -24,7 +35,4 @@ if(LANCET_BUILD_EXPERIMENTS OR LANCET_BUILD_BENCHMARKS)
 endif()
 if(LANCET_BUILD_BENCHMARKS)
   find_package(benchmark 1.7 REQUIRED)
-endif()
-if(LANCET_BUILD_TESTS)
-  find_package(GTest 1.12 REQUIRED)
 endif()

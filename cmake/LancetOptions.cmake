@@ -4,6 +4,8 @@ if(NOT LANCET_SCHEDULER MATCHES "^(tbb|openmp|serial)$")
   message(FATAL_ERROR "LANCET_SCHEDULER is '${LANCET_SCHEDULER}'; expected tbb, openmp or serial")
 endif()
 
+include(GNUInstallDirs)
+
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()

@@ -25,7 +25,7 @@ function(lancet_library name)
   set_target_properties(lancet_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   lancet_settings(lancet_${name})
   target_include_directories(lancet_${name} PUBLIC "$<BUILD_INTERFACE:${LANCET_INCLUDE_ROOT}>"
-                                                   "$<INSTALL_INTERFACE:include>")
+                                                   "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_link_libraries(lancet_${name} PUBLIC ${arg_DEPENDS})
   set_property(GLOBAL APPEND PROPERTY LANCET_LIBRARIES lancet_${name})
 endfunction()
