@@ -16,13 +16,8 @@ constexpr std::array all_kinds{SchedulerKind::serial, SchedulerKind::openmp, Sch
 constexpr bool compiled_in(SchedulerKind kind) {
     switch (kind) {
         case SchedulerKind::serial:
-            return true;
         case SchedulerKind::threads:
-#if defined(LANCET_HAS_THREADS)
             return true;
-#else
-            return false;
-#endif
         case SchedulerKind::openmp:
 #if defined(LANCET_HAS_OPENMP)
             return true;
@@ -74,11 +69,7 @@ std::unique_ptr<Scheduler> make_scheduler(SchedulerKind kind, int threads) {
             break;
 #endif
         case SchedulerKind::threads:
-#if defined(LANCET_HAS_THREADS)
             return make_std_threads(threads);
-#else
-            break;
-#endif
     }
     throw Error("scheduler '" + std::string(to_string(kind)) +
                 "' is not compiled in; this program has: " + list(available_schedulers()));
