@@ -29,14 +29,14 @@ class TetMesh {
   public:
     /// What a mesh is made of, not yet checked.
     struct Definition {
-        std::vector<Point> nodes;
-        std::vector<Tetrahedron> tetrahedra;
+        std::vector<Point> nodes{};
+        std::vector<Tetrahedron> tetrahedra{};
         /// One number per tetrahedron, by which materials are chosen; empty: all in region 0.
-        std::vector<std::int32_t> regions;
+        std::vector<std::int32_t> regions{};
         /// Named sets of nodes. The order and repetition of entries mean nothing.
-        std::map<std::string, std::vector<std::int32_t>> node_sets;
+        std::map<std::string, std::vector<std::int32_t>> node_sets{};
         /// Names of regions, where they have one.
-        std::map<int, std::string> region_names;
+        std::map<int, std::string> region_names{};
     };
 
     /// The mesh without nodes and elements.

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lancet/mesh/tet_mesh.hpp"
+
+namespace lancet::mesh {
+
+/// The connected parts of a mesh: elements that share a node are connected.
+struct Components {
+    std::int32_t count = 0;
+    /// Component of each element and of each node, numbered in the order of their lowest node.
+    std::vector<std::int32_t> of_element, of_node;
+};
+
+Components components(const TetMesh& mesh);
+
+}  // namespace lancet::mesh
