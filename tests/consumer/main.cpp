@@ -1,0 +1,59 @@
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+
+#include "lancet/kernels/error.hpp"
+#include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/mesh/generate/box.hpp"
+#include "lancet/mesh/tet_mesh.hpp"
+#include "lancet/runtime/schedule/scheduler.hpp"
+
+namespace {
+
+bool is_near(double value, double expected) {
+    return std::abs(value - expected) < 1e-12;
+}
+
+/// Calls into every library, so that all of them have to link.
+int use_lancet() {
+    const lancet::mesh::TetMesh mesh = lancet::mesh::box({.cells = {4, 2, 2}, .size = {2, 1, 1}});
+    if (mesh.tetrahedra().size() != 80 || !is_near(mesh.volume(), 2)) {
+        std::fprintf(stderr, "a box of 4 x 2 x 2 cells has %zu elements and volume %g\n", mesh.tetrahedra().size(),
+                     mesh.volume());
+        return 1;
+    }
+    if (!lancet::kernels::is_executable(lancet::kernels::active_instruction_set())) {
+        std::fprintf(stderr, "the active instruction set cannot be executed\n");
+        return 1;
+    }
+    std::array<int, 100> blocks{};
+    auto scheduler = lancet::runtime::make_scheduler(lancet::runtime::default_scheduler, 2);
+    scheduler->for_each_block(100, [&](int block) { blocks[static_cast<std::size_t>(block)] += block; });
+    for (int block = 0; block < 100; ++block) {
+        if (blocks[static_cast<std::size_t>(block)] != block) {
+            std::fprintf(stderr, "block %d did not run once\n", block);
+            return 1;
+        }
+    }
+    try {
+        (void)lancet::mesh::box({.cells = {0, 1, 1}});
+    } catch (const lancet::Error& error) {
+        std::printf("as expected: %s\n", error.what());
+        return 0;
+    }
+    std::fprintf(stderr, "a box without cells was accepted\n");
+    return 1;
+}
+
+}  // namespace
+
+int main() {
+    try {
+        return use_lancet();
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 2;
+    }
+}
