@@ -2,9 +2,12 @@
 
 // Included only by the files of the instruction sets (scalar.cpp, sse2.cpp, ...): makes their kernels.
 
+#include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
 #include "lancet/kernels/isa/instances.hpp"
+#include "lancet/kernels/operator/operator_kernels_simd.hpp"
 #include "lancet/kernels/rotation/rotation_kernels_simd.hpp"
 #include "lancet/kernels/simd/pack.hpp"
+#include "lancet/kernels/vector/vector_kernels_simd.hpp"
 
 namespace lancet::kernels {
 
@@ -12,7 +15,14 @@ namespace lancet::kernels {
 template <class Isa, class Real>
 constexpr KernelSet<Real> make_kernel_set(InstructionSet instruction_set) {
     using P = Pack<Isa, Real>;
-    return {.instruction_set = instruction_set, .width = P::width, .rotation = make_rotation_kernels<P>()};
+    return {.instruction_set = instruction_set,
+            .width = P::width,
+            .rotation = make_rotation_kernels<P>(),
+            .tetrahedron = make_tetrahedron_kernels<P>(),
+            .matrix = make_operator_kernels<P>(),
+            .diagonal = make_diagonal_kernels<P>(),
+            .vector = make_vector_kernels<P, P>(),
+            .vector_mixed = make_vector_kernels<P, Pack<Isa, double>>()};
 }
 
 }  // namespace lancet::kernels

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "lancet/kernels/element/tetrahedron_kernels.hpp"
 #include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/kernels/operator/operator_kernels.hpp"
 #include "lancet/kernels/rotation/rotation_kernels.hpp"
+#include "lancet/kernels/vector/vector_kernels.hpp"
 
 namespace lancet::kernels {
 
@@ -12,6 +15,11 @@ struct KernelSet {
     InstructionSet instruction_set;
     int width;  ///< lanes of a batch
     RotationKernels<Real> rotation;
+    TetrahedronKernels<Real> tetrahedron;
+    OperatorKernels<Real> matrix;
+    DiagonalKernels<Real> diagonal;
+    VectorKernels<Real, Real> vector;
+    VectorKernels<Real, double> vector_mixed;  ///< operator in Real, solution and residual in double
 };
 
 /// The kernels of an instruction set, for Real = float or double. Throws Error unless it is compiled in and executable.

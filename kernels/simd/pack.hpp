@@ -73,9 +73,7 @@ struct Pack {
 
     Pack() = default;
     LANCET_INLINE Pack(Batch batch) : value(batch) {}
-    LANCET_INLINE Pack(Real number)
-        requires(!one_lane)
-        : value(number) {}
+    LANCET_INLINE Pack(Real number) requires(!one_lane) : value(number) {}
 
     LANCET_INLINE static Pack load(const Real* source) {
         if constexpr (one_lane) {
@@ -144,9 +142,13 @@ struct Pack {
     }
 
     /// The smaller; b where a or b is not a number.
-    LANCET_INLINE friend Pack min(Pack a, Pack b) { return select(a < b, a, b); }
+    LANCET_INLINE friend Pack min(Pack a, Pack b) {
+        return select(a < b, a, b);
+    }
     /// The larger; b where a or b is not a number.
-    LANCET_INLINE friend Pack max(Pack a, Pack b) { return select(a > b, a, b); }
+    LANCET_INLINE friend Pack max(Pack a, Pack b) {
+        return select(a > b, a, b);
+    }
 
     LANCET_INLINE friend Pack abs(Pack a) {
         if constexpr (one_lane) {
@@ -179,7 +181,9 @@ struct Pack {
     }
 
     /// True in the lanes that hold neither infinity nor not-a-number.
-    LANCET_INLINE friend Mask<Isa, Real> is_finite(Pack a) { return a - a == Pack(Real(0)); }
+    LANCET_INLINE friend Mask<Isa, Real> is_finite(Pack a) {
+        return a - a == Pack(Real(0));
+    }
 
     /// The sum over the lanes, added pairwise in a fixed order.
     LANCET_INLINE friend Real sum(Pack a) {

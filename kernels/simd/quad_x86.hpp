@@ -93,7 +93,9 @@ struct Quad<isa::avx2, float> : FloatQuad<isa::avx2> {};
 template <>
 struct Quad<isa::avx2, double> : DoubleQuad<isa::avx2> {};
 
-LANCET_INLINE Quad<isa::avx2, float> narrow(Quad<isa::avx2, double> a) { return {{_mm256_cvtpd_ps(a.number)}}; }
+LANCET_INLINE Quad<isa::avx2, float> narrow(Quad<isa::avx2, double> a) {
+    return {{_mm256_cvtpd_ps(a.number)}};
+}
 
 /// The 4 x 4 transpose within each 128-bit part of four registers.
 LANCET_INLINE void transpose_parts(__m256& r0, __m256& r1, __m256& r2, __m256& r3) {
@@ -159,7 +161,9 @@ struct Quad<isa::avx512, float> : FloatQuad<isa::avx512> {};
 template <>
 struct Quad<isa::avx512, double> : DoubleQuad<isa::avx512> {};
 
-LANCET_INLINE Quad<isa::avx512, float> narrow(Quad<isa::avx512, double> a) { return {{_mm256_cvtpd_ps(a.number)}}; }
+LANCET_INLINE Quad<isa::avx512, float> narrow(Quad<isa::avx512, double> a) {
+    return {{_mm256_cvtpd_ps(a.number)}};
+}
 
 /// The 4 x 4 transpose within each 128-bit part of four registers.
 LANCET_INLINE void transpose_parts(__m512& r0, __m512& r1, __m512& r2, __m512& r3) {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lancet/kernels/layout/aligned_vector.hpp"
+#include "lancet/kernels/layout/node_numbering.hpp"
+#include "lancet/kernels/layout/scatter_plan.hpp"
+
+namespace lancet::kernels {
+
+/// The Lame parameters and the density of an isotropic material, in SI units.
+struct ElasticParameters {
+    double lambda = 0;
+    double mu = 0;
+    double density = 0;
+};
+
+/// Linear tetrahedra in batches of `width` lanes. A lane of the last batch of a block that has no element of its own
+/// repeats one with weight zero. The lanes of a batch come from distant places of the block, since lanes that share
+/// nodes wait for each other when they are scattered.
+template <class Real>
+struct ElementBatches {
+    /// Numbers per lane of `rest`: the gradients of the shape functions of corners 1, 2, 3 (row by row; that of corner
+    /// 0 is minus their sum), sqrt(V mu) and lambda / mu.
+    static constexpr int rest_entries = 11;
+
+    int width = 1;
+    std::vector<std::int32_t> block_batch_begin;  ///< first batch of each block, and the end
+    AlignedVector<std::int32_t> nodes;            ///< [batch][corner][lane]
+    AlignedVector<std::int32_t> targets;          ///< [batch][corner][lane], into the buffer of `scatter`
+    AlignedVector<Real> rest;                     ///< [batch][entry][lane]
+    AlignedVector<Real> mass;                     ///< [batch][lane] rho V, zero in padding
+    std::vector<std::int32_t> slot_of_element;    ///< batch * width + lane of each element of the mesh
+    ScatterPlan scatter;
+
+    int batches() const noexcept { return block_batch_begin.empty() ? 0 : block_batch_begin.back(); }
+    std::int32_t slots() const noexcept { return batches() * width; }
+    std::size_t bytes() const noexcept;
+};
+
+/// Lays the elements out.
+/// - positions, tetrahedra: the mesh at rest, in the user's numbering
+/// - parameters: of each element's region, `regions` one per element
+template <class Real>
+ElementBatches<Real> make_element_batches(std::span<const Point> positions, std::span<const Tetrahedron> tetrahedra,
+                                          std::span<const std::int32_t> regions,
+                                          std::span<const ElasticParameters> parameters, const NodeNumbering& numbering,
+                                          ScatterStrategy strategy, int width);
+
+/// Gradients of the four shape functions and the volume of a linear tetrahedron.
+struct TetrahedronGeometry {
+    std::array<Point, 4> gradients;
+    double volume;
+};
+TetrahedronGeometry tetrahedron_geometry(std::span<const Point> positions, const Tetrahedron& element);
+
+}  // namespace lancet::kernels

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lancet/kernels/layout/aligned_vector.hpp"
+#include "lancet/kernels/layout/node_numbering.hpp"
+#include "lancet/kernels/layout/scatter_plan.hpp"
+
+namespace lancet::kernels {
+
+/// Which 3 x 3 blocks of the matrix a pattern holds.
+enum class RowContent {
+    upper_edges,  ///< one block per edge of the mesh graph, in the row of its first node
+    full_rows,    ///< every block, the diagonal one first
+    diagonal      ///< the diagonal blocks alone
+};
+
+/// The rows of the free nodes in sliced ELLPACK order: `width` rows of similar length form a chunk, entry k of a chunk
+/// holds the k-th block of each of its rows. Each block of the matrix is a sum over the elements that contain both its
+/// nodes, its incidences; it is assembled by gathering them, without a conflict and in a fixed order.
+struct RowPattern {
+    int width = 1;
+    RowContent content = RowContent::upper_edges;
+    std::vector<std::int32_t> block_chunk_begin;  ///< first chunk of each block, and the end
+    std::vector<std::int32_t> chunk_entry_begin;  ///< first entry of each chunk, and the end
+    AlignedVector<std::int32_t> row;              ///< [chunk][lane] node
+    AlignedVector<std::int32_t> row_target;       ///< [chunk][lane] place of the row's own sum
+    AlignedVector<std::int32_t> column;           ///< [entry][lane] node
+    AlignedVector<std::int32_t> column_target;    ///< [entry][lane] place of the transposed product (upper_edges only)
+    std::vector<std::int32_t> incidence_begin;    ///< first incidence of each entry, and the end
+    AlignedVector<std::int32_t> incidence;        ///< [incidence][2][lane] 4 * slot + corner of the row's and the
+                                                  ///< column's node; 4 * slots stands for 'nothing'
+    ScatterPlan scatter;                          ///< upper_edges only
+    std::int64_t blocks_stored = 0;               ///< 3 x 3 blocks without padding
+
+    int chunks() const noexcept { return block_chunk_begin.back(); }
+    int entries() const noexcept { return chunk_entry_begin.back(); }
+    std::size_t bytes() const noexcept;
+};
+
+/// Builds a pattern. `slot_of_element` and `slots` are those of the element batches whose gradients are gathered.
+RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tetrahedra,
+                            std::span<const std::int32_t> slot_of_element, std::int32_t slots,
+                            const NodeNumbering& numbering, ScatterStrategy strategy, int width);
+
+}  // namespace lancet::kernels

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "lancet/kernels/rotation/matrix3.hpp"
+#include "lancet/kernels/simd/nodes.hpp"
+
+namespace lancet::kernels {
+
+/// A symmetric 3 x 3 matrix in every lane.
+template <class P>
+struct Symmetric3 {
+    P xx, yy, zz, xy, xz, yz;
+};
+
+/// Hooke's law for an isotropic material, divided by mu: G + G^T + (lambda / mu) tr(G) 1, for a displacement gradient
+/// G.
+template <class P>
+LANCET_INLINE Symmetric3<P> hooke_stress(const Matrix3<P>& g, P lambda_over_mu) {
+    const P pressure = lambda_over_mu * (g.entry[0][0] + g.entry[1][1] + g.entry[2][2]);
+    return {fma(P(2), g.entry[0][0], pressure), fma(P(2), g.entry[1][1], pressure), fma(P(2), g.entry[2][2], pressure),
+            g.entry[0][1] + g.entry[1][0],      g.entry[0][2] + g.entry[2][0],      g.entry[1][2] + g.entry[2][1]};
+}
+
+/// The energy density stress : G / 2, divided by mu.
+template <class P>
+LANCET_INLINE P hooke_energy(const Matrix3<P>& g, const Symmetric3<P>& s) {
+    P energy = s.xx * g.entry[0][0];
+    energy = fma(s.yy, g.entry[1][1], energy);
+    energy = fma(s.zz, g.entry[2][2], energy);
+    energy = fma(s.xy, g.entry[0][1] + g.entry[1][0], energy);
+    energy = fma(s.xz, g.entry[0][2] + g.entry[2][0], energy);
+    energy = fma(s.yz, g.entry[1][2] + g.entry[2][1], energy);
+    return P(typename P::Real(0.5)) * energy;
+}
+
+template <class P>
+LANCET_INLINE Vector3<P> multiply(const Symmetric3<P>& s, const Vector3<P>& v) {
+    return {fma(s.xx, v.x, fma(s.xy, v.y, s.xz * v.z)), fma(s.xy, v.x, fma(s.yy, v.y, s.yz * v.z)),
+            fma(s.xz, v.x, fma(s.yz, v.y, s.zz * v.z))};
+}
+
+}  // namespace lancet::kernels
