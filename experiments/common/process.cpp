@@ -65,9 +65,9 @@ class Child {
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     ~Child() {
-        if (!status_) {
-            kill();
-            wait();
+        if (status_) return;
+        kill();
+        while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
         }
     }
 
@@ -123,7 +123,10 @@ std::vector<std::string> merged_environment(const Command& command) {
                                           [&name](const auto& variable) { return variable.first == name; });
         if (!replaced) result.push_back(text);
     }
-    for (const auto& [name, value] : command.environment) result.push_back(name + "=" + value);
+    for (const auto& [name, value] : command.environment) {
+        result.push_back(name);
+        result.back().append("=").append(value);
+    }
     return result;
 }
 

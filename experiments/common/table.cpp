@@ -141,7 +141,7 @@ std::string format_number(double value, int significant_digits) {
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
     if (value == 0) return "0";
     // Rounding first: it may carry into a new leading digit (9.9996 -> 10.00).
-    const std::string scientific = print_with("%.*e", significant_digits - 1, value);
+    std::string scientific = print_with("%.*e", significant_digits - 1, value);
     const int exponent = std::stoi(scientific.substr(scientific.find('e') + 1));
     if (exponent < -4 || exponent >= 7) return scientific;
     return print_with("%.*f", std::max(0, significant_digits - 1 - exponent), value);
