@@ -8,7 +8,7 @@ namespace lancet::kernels {
 /// Where a Newton step of the analytic polar decomposition leads.
 template <class P>
 struct RotationStep {
-    Quaternion<P> rotation;  ///< not normalised: 1 <= |q|^2 / |start|^2 <= 2
+    Quaternion<P> rotation;  ///< not normalised: 1 <= |q| / |start| < 2
     Mask<typename P::Isa, typename P::Real> converged;
 };
 
@@ -79,7 +79,9 @@ LANCET_INLINE P safe_shift(const RotationDerivatives<P>& d) {
 ///
 /// The rotation vector w = H^-1 g has the length tan(angle) if what is left is a rotation about a principal axis of the
 /// stretch; therefore the step turns by arctan |w|, which is exact there and of third order elsewhere. Where H is not
-/// safely positive definite (far from the maximum, or F nearly of rank one), a shifted Hessian makes it an ascent.
+/// safely positive definite there are two ways on. Past a right angle the same step, with the angle continued to the
+/// second quadrant, still ascends unless g lies badly; it is taken up to about 117 degrees. Else (also where F is
+/// nearly of rank one, so that the rotation is not determined) a shifted Hessian makes it an ascent.
 ///
 /// A lane is converged when H is safely positive definite and the step so short that what it leaves is rounding; as
 /// tr(R^T F) is a quadratic form in the quaternion, every local maximum is the global one.
@@ -95,8 +97,16 @@ LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternio
     const auto safe = (d.trace > zero) & (w.adjugate_trace > zero) & (w.determinant > least);
     if (!all(safe)) [[unlikely]] {
         const auto ascent = solve_shifted(d, safe_shift(d));
-        for (int i = 0; i < 3; ++i) w.numerator[i] = select(safe, w.numerator[i], ascent.numerator[i]);
-        w.determinant = select(safe, w.determinant, max(ascent.determinant, zero));
+        const P progress =
+            fma(w.numerator[2], d.gradient[2], fma(w.numerator[1], d.gradient[1], w.numerator[0] * d.gradient[0]));
+        const auto turning = (w.determinant < -abs(least)) & (progress > zero);
+        const P numerator_length = sqrt(
+            fma(w.numerator[2], w.numerator[2], fma(w.numerator[1], w.numerator[1], w.numerator[0] * w.numerator[0])));
+        const P obtuse = max(w.determinant, P(Real(-0.5)) * numerator_length);
+        for (int i = 0; i < 3; ++i) {
+            w.numerator[i] = select(safe | turning, w.numerator[i], ascent.numerator[i]);
+        }
+        w.determinant = select(safe, w.determinant, select(turning, obtuse, max(ascent.determinant, zero)));
     }
     const P square =
         fma(w.numerator[2], w.numerator[2], fma(w.numerator[1], w.numerator[1], w.numerator[0] * w.numerator[0]));
@@ -109,19 +119,35 @@ LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternio
     return {multiply(start, turn), safe & (square <= longest * determinant_square)};
 }
 
+/// A step less than doubles the length, the Hessian grows with its square and the determinant of that with its sixth
+/// power: what keeps them in range after step number `step`, counted from 0.
+template <class P>
+LANCET_INLINE Quaternion<P> keep_in_range(const Quaternion<P>& q, int step) {
+    return step % 4 == 3 ? normalise(q) : q;
+}
+
 /// The analytic polar decomposition (Kugelstadt, Koschier, Bender 2018: Fast Corotated FEM using Operator Splitting):
-/// `steps` Newton steps from `start`, a unit quaternion. The result is a unit quaternion for every finite F; it is the
-/// nearest rotation if the start was near enough.
+/// `steps` Newton steps from q, a unit quaternion. The result is a unit quaternion for every finite F; it is the
+/// nearest rotation if the start was near enough. A step is one long chain of dependent operations: several batches
+/// together
+/// (`count`) keep the processor busy.
+template <int count, class P>
+LANCET_INLINE void quaternion_rotations(const Matrix3<P> (&f)[count], Quaternion<P> (&q)[count], int steps) {
+    Matrix3<P> scaled[count];
+    for (int i = 0; i < count; ++i) scaled[i] = prescale(f[i]);
+    for (int step = 0; step < steps; ++step) {
+        for (int i = 0; i < count; ++i) q[i] = keep_in_range(rotation_step(scaled[i], q[i]).rotation, step);
+    }
+    for (int i = 0; i < count; ++i) q[i] = normalise(q[i]);
+}
+
+/// The same for one batch.
 template <class P>
 LANCET_INLINE Quaternion<P> quaternion_rotation(const Matrix3<P>& f, const Quaternion<P>& start, int steps) {
-    const Matrix3<P> scaled = prescale(f);
-    Quaternion<P> q = start;
-    for (int step = 0; step < steps; ++step) {
-        q = rotation_step(scaled, q).rotation;
-        // The length at most doubles in a step, and the Hessian grows with its sixth power.
-        if (step % 4 == 3) q = normalise(q);
-    }
-    return normalise(q);
+    const Matrix3<P> matrices[1] = {f};
+    Quaternion<P> q[1] = {start};
+    quaternion_rotations(matrices, q, steps);
+    return q[0];
 }
 
 }  // namespace lancet::kernels

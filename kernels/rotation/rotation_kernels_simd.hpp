@@ -24,15 +24,36 @@ LANCET_INLINE Quaternion<P> nearest_rotation(const Matrix3<P>& f, const Quaterni
     }
 }
 
+/// The batches [batch, batch + count), by one method.
+template <RotationMethod method, int count, class P>
+LANCET_INLINE void decompose_together(int steps, const typename P::Real* deformation_gradient,
+                                      typename P::Real* quaternion, std::ptrdiff_t batch) {
+    Matrix3<P> f[count];
+    Quaternion<P> q[count];
+    for (int i = 0; i < count; ++i) {
+        f[i] = load_matrix<P>(deformation_gradient + (batch + i) * 9 * P::width);
+        q[i] = load_quaternion<P>(quaternion + (batch + i) * 4 * P::width);
+    }
+    if constexpr (method == RotationMethod::quaternion) {
+        quaternion_rotations(f, q, steps);
+    } else if constexpr (method == RotationMethod::robust) {
+        robust_rotations(f, q, steps);
+    } else {
+        for (int i = 0; i < count; ++i) q[i] = nearest_rotation<method>(f[i], q[i], steps);
+    }
+    for (int i = 0; i < count; ++i) store_quaternion(quaternion + (batch + i) * 4 * P::width, q[i]);
+}
+
 /// The batches [begin, end), by one method.
 template <RotationMethod method, class P>
 void decompose_batches(int steps, const typename P::Real* deformation_gradient, typename P::Real* quaternion, int begin,
                        int end) {
-    for (std::ptrdiff_t batch = begin; batch < end; ++batch) {
-        const Matrix3<P> f = load_matrix<P>(deformation_gradient + batch * 9 * P::width);
-        typename P::Real* q = quaternion + batch * 4 * P::width;
-        store_quaternion(q, nearest_rotation<method>(f, load_quaternion<P>(q), steps));
+    constexpr int together = method == RotationMethod::quaternion || method == RotationMethod::robust ? 2 : 1;
+    std::ptrdiff_t batch = begin;
+    for (; batch + together <= end; batch += together) {
+        decompose_together<method, together, P>(steps, deformation_gradient, quaternion, batch);
     }
+    for (; batch < end; ++batch) decompose_together<method, 1, P>(steps, deformation_gradient, quaternion, batch);
 }
 
 template <class P>
