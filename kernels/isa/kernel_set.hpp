@@ -3,6 +3,7 @@
 #include "lancet/kernels/element/tetrahedron_kernels.hpp"
 #include "lancet/kernels/isa/instruction_set.hpp"
 #include "lancet/kernels/operator/operator_kernels.hpp"
+#include "lancet/kernels/peak/peak_kernels.hpp"
 #include "lancet/kernels/rotation/rotation_kernels.hpp"
 #include "lancet/kernels/vector/vector_kernels.hpp"
 
@@ -20,6 +21,7 @@ struct KernelSet {
     DiagonalKernels<Real> diagonal;
     VectorKernels<Real, Real> vector;
     VectorKernels<Real, double> vector_mixed;  ///< operator in Real, solution and residual in double
+    PeakKernels<Real> peak;                    ///< the machine's limit, to stand beside what is reached
 };
 
 /// The kernels of an instruction set, for Real = float or double. Throws Error unless it is compiled in and executable.
