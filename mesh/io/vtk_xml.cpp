@@ -53,7 +53,8 @@ class Reader {
         }
         // Nothing is rewritten but names and attributes, so that places in the text stay places in the file.
         const pugi::xml_parse_result result = document_.load_buffer_inplace(
-            xml_.data(), xml_.size(), pugi::parse_minimal | pugi::parse_wconv_attribute, pugi::encoding_utf8);
+            xml_.data(), xml_.size(), pugi::parse_minimal | pugi::parse_wconv_attribute | pugi::parse_escapes,
+            pugi::encoding_utf8);
         if (!result) {
             Cursor place(content_, name_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, result.offset)));
             place.fail(std::string("not well-formed XML: ") + result.description());
