@@ -105,7 +105,7 @@ InstructionSet require(InstructionSet instruction_set) {
     const std::string name(to_string(instruction_set));
     if (!is_compiled_in(instruction_set)) {
         std::string available;
-        for (const InstructionSet set : compiled_instruction_sets()) available += " " + std::string(to_string(set));
+        for (const InstructionSet set : compiled_instruction_sets()) (available += ' ') += to_string(set);
         throw Error("instruction set " + name + " is not compiled in; available are" + available);
     }
     if (!is_executable(instruction_set)) throw Error("this processor cannot execute instruction set " + name);

@@ -1,0 +1,46 @@
+# Usage: cmake -DISA=avx2 -DNM=nm -DOBJECTS=a.o|b.o -P one_definition.cmake
+#
+# Fails if an object that was compiled with the flags of an instruction set defines a symbol that another object may
+# define too (weak or unique) and that does not carry the tag of this instruction set: the linker would keep one of the
+# two copies, perhaps the one that not every machine can execute.
+
+# The tags of this project and of xsimd; the latter must not be one that a wider instruction set compiles as well.
+set(tag_sse2 "isa::sse2|xsimd::sse2")
+set(tag_avx2 "isa::avx2|xsimd::fma3<xsimd::avx2>")
+set(tag_avx512 "isa::avx512|xsimd::avx512dq")
+set(tag_neon "isa::neon|xsimd::neon64")
+if(NOT DEFINED tag_${ISA})
+  message(FATAL_ERROR "unknown instruction set '${ISA}'")
+endif()
+
+string(REPLACE "|" ";" OBJECTS "${OBJECTS}")
+set(tagged 0)
+set(offenders "")
+foreach(object IN LISTS OBJECTS)
+  execute_process(COMMAND "${NM}" -C --defined-only "${object}" OUTPUT_VARIABLE symbols RESULT_VARIABLE result)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${NM} cannot read ${object}")
+  endif()
+  string(REPLACE ";" "," symbols "${symbols}")
+  string(REPLACE "[" "(" symbols "${symbols}")
+  string(REPLACE "]" ")" symbols "${symbols}")
+  string(REPLACE "\n" ";" symbols "${symbols}")
+  foreach(line IN LISTS symbols)
+    if(line MATCHES "^[0-9a-f]+ ([WVuwvTDBR]) (.*)$")
+      set(kind "${CMAKE_MATCH_1}")
+      set(symbol "${CMAKE_MATCH_2}")
+      if(symbol MATCHES "${tag_${ISA}}")
+        math(EXPR tagged "${tagged} + 1")
+      elseif(NOT symbol STREQUAL "DW.ref.__gxx_personality_v0")
+        string(APPEND offenders "\n  ${kind} ${symbol}")
+      endif()
+    endif()
+  endforeach()
+endforeach()
+if(NOT offenders STREQUAL "")
+  message(FATAL_ERROR "global symbols without the tag of ${ISA}:${offenders}")
+endif()
+if(tagged EQUAL 0)
+  message(FATAL_ERROR "no symbol with the tag of ${ISA} in ${OBJECTS}")
+endif()
+message(STATUS "${tagged} global symbols, all with the tag of ${ISA}")
