@@ -31,7 +31,7 @@ struct TetrahedronArguments {
     const Real* rest;
     const double* positions;  ///< xyz_ nodal vector, metres
     Real* quaternion;         ///< [batch][w, x, y, z][lane]; nullptr for a linear material: no rotation
-    Real* rotated;            ///< sqrt(V mu) R grad phi, in the layout below
+    Real* rotated;            ///< sqrt(V mu) R grad phi, in the layout below; nullptr: not stored
     Real* force;              ///< xyz_ buffer of the scatter plan, newtons; nullptr where no force is wanted
     double* energy;           ///< [block] joules; nullptr where it is not wanted
     GradientLayout layout;

@@ -129,7 +129,9 @@ LANCET_INLINE void elastic_loop(const TetrahedronArguments<typename P::Real>& a,
             store_quaternion(stored, q);
             const Matrix3<P> r = scale(to_matrix(q), root);
             for (int j = 0; j < 3; ++j) b.of[j] = multiply(r, b.of[j]);
-            if (a.layout == GradientLayout::batches) {
+            if (a.rotated == nullptr) {
+                // Nothing is kept.
+            } else if (a.layout == GradientLayout::batches) {
                 store_corners(rotated, b);
             } else {
                 store_gradient_corners(rotated, b, lambda_over_mu);

@@ -1,0 +1,465 @@
+#include "lancet/runtime/integrate/implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lancet/runtime/observe/clock.hpp"
+#include "lancet/runtime/schedule/ordered_sum.hpp"
+
+namespace lancet::runtime {
+
+/// Adds the time since the last mark to one of the totals.
+template <class Real, class Accumulate>
+class ImplicitStep<Real, Accumulate>::Timer {
+  public:
+    void add_to(double& total) {
+        const double now = steady_seconds();
+        total += now - mark_;
+        mark_ = now;
+    }
+
+  private:
+    double mark_ = steady_seconds();
+};
+
+template <class Real, class Accumulate>
+ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, const OperatorDefinition& definition,
+                                             const Settings& settings)
+    : elements_(&elements),
+      numbering_(&elements.numbering()),
+      settings_(settings),
+      mass_(definition.nodal_mass),
+      matrix_(make_operator(settings.matrix, elements, definition)),
+      preconditioner_(std::make_unique<Preconditioner<Real>>(settings.preconditioner, elements, *matrix_, definition,
+                                                             settings.coarse_change)),
+      conjugate_gradients_(elements.kernels(), elements.numbering()),
+      start_position_(mass_.size() * 4),
+      start_velocity_(mass_.size() * 4),
+      trial_velocity_(mass_.size() * 4),
+      evaluated_(mass_.size() * 4),
+      right_hand_side_(mass_.size() * 4),
+      change_(mass_.size() * 4),
+      product_input_(mass_.size() * 4),
+      partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::step_length() const noexcept {
+    return settings_.integrator == Integrator::implicit_midpoint ? settings_.time_step / 2 : settings_.time_step;
+}
+
+template <class Real, class Accumulate>
+template <class Function>
+double ImplicitStep<Real, Accumulate>::sum_over_nodes(Scheduler& scheduler, const Function& value) {
+    return ordered_sum(scheduler, std::span<double>(partial_), [&](int block) {
+        double sum = 0;
+        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+            sum += value(static_cast<std::size_t>(node), 4 * static_cast<std::size_t>(node));
+        }
+        return sum;
+    });
+}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::kinetic_energy(Scheduler& scheduler, std::span<const double> velocity) {
+    return sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+        return 0.5 * mass_[node] *
+               (velocity[at] * velocity[at] + velocity[at + 1] * velocity[at + 1] +
+                velocity[at + 2] * velocity[at + 2]);
+    });
+}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::elastic_energy(Scheduler& scheduler, const double* position) {
+    return elements_->evaluate(scheduler, position,
+                               {.rotation = !is_linear(), .force = false, .energy = true, .keep_gradients = false});
+}
+
+template <class Real, class Accumulate>
+bool ImplicitStep<Real, Accumulate>::is_finite(Scheduler& scheduler, std::span<const double> nodal) {
+    return std::isfinite(sum_over_nodes(scheduler, [&](std::size_t, std::size_t at) {
+        return std::abs(nodal[at]) + std::abs(nodal[at + 1]) + std::abs(nodal[at + 2]);
+    }));
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::move(Scheduler& scheduler, BodyMotion& motion, double factor) {
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            motion.position[i] = start_position_[i] + factor * motion.velocity[i];
+        }
+    });
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads,
+                                               bool renew) {
+    const double h = step_length();
+    const typename Operator<Real>::Factors factors{.mass = 1 + h * loads.rayleigh_mass,
+                                                   .stiffness = h * h + h * loads.rayleigh_stiffness};
+    const bool same_factors =
+        factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
+    const bool rotate = !is_linear() && (renew || !matrix_is_known_);
+    elements_->evaluate(scheduler, position, {.rotation = rotate, .force = true, .energy = false});
+    if (rotate || !matrix_is_known_ || !same_factors) {
+        matrix_->assemble(scheduler, factors);
+        matrix_is_known_ = false;  // until the preconditioner has it too
+    }
+}
+
+template <class Real, class Accumulate>
+typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>::right_hand_side(
+    Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
+    bool at_state) {
+    const double h = step_length();
+    const bool needs_product = at_state || loads.rayleigh_stiffness > 0;
+    if (needs_product) {
+        for (std::size_t i = 0; i < product_input_.size(); ++i) {
+            product_input_[i] = static_cast<Real>(motion.velocity[i]);
+        }
+        matrix_->product(scheduler, product_input_.data());
+    }
+    // Linearised at the state: dt D v + dt^2 K v = A v - M v. At the prediction: dt beta K v is a part of A v.
+    const double stiffness_share = at_state ? 1 : h * loads.rayleigh_stiffness / (h * h + h * loads.rayleigh_stiffness);
+    const double product_mass = at_state ? 1 : 1 + h * loads.rayleigh_mass;
+    const double drag = at_state ? 0 : h * loads.rayleigh_mass;
+    std::vector<double>& squares = partial_;
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        elements_->merge_force(block);
+        if (needs_product) matrix_->merge(block);
+        const Real* force = elements_->force();
+        const Real* product = matrix_->buffer();
+        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+            const double mass = mass_[static_cast<std::size_t>(node)];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::size_t i = 4 * static_cast<std::size_t>(node) + axis;
+                const double velocity = motion.velocity[i];
+                double b = h * (static_cast<double>(force[i]) + mass * loads.gravity[axis] + loads.nodal[i]) -
+                           mass * (velocity - start_velocity_[i]) - drag * mass * velocity;
+                if (needs_product) {
+                    b -= stiffness_share * (static_cast<double>(product[i]) - product_mass * mass * velocity);
+                }
+                right_hand_side_[i] = static_cast<Accumulate>(b);
+            }
+        }
+        filter.apply(right_hand_side_.data(), block);
+        double square = 0;
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            square += static_cast<double>(right_hand_side_[i]) * static_cast<double>(right_hand_side_[i]);
+            change_[i] = 0;
+        }
+        squares[static_cast<std::size_t>(block)] = square;
+    });
+    Residual residual;
+    residual.squared_norm = sum_in_order(std::span<const double>(squares));
+    return residual;
+}
+
+template <class Real, class Accumulate>
+ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& scheduler, const ConstraintFilter& filter,
+                                                              StepReport& report) {
+    if (!matrix_is_known_) {
+        preconditioner_->refresh(scheduler, evaluated_.data());
+        matrix_is_known_ = true;
+    }
+    const ConjugateGradientResult result = conjugate_gradients_.solve(
+        scheduler, *matrix_, *preconditioner_, filter, std::span<const Accumulate>(right_hand_side_),
+        std::span<Accumulate>(change_), settings_.conjugate_gradients);
+    report.conjugate_gradient_iterations += result.iterations;
+    report.conjugate_gradient_residual = result.residual;
+    return result;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                                     const ConstraintFilter& filter, StepReport& report,
+                                                     StepTotals& totals) {
+    Timer timer;
+    const bool renew = steps_since_renewal_ == 0;
+    evaluated_ = motion.position;
+    linearise(scheduler, evaluated_.data(), loads, renew);
+    timer.add_to(totals.seconds_forces);
+    right_hand_side(scheduler, motion, loads, filter, true);
+    timer.add_to(totals.seconds_rest);
+    solve(scheduler, filter, report);
+    timer.add_to(totals.seconds_solve);
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            motion.velocity[i] += static_cast<double>(change_[i]);
+        }
+    });
+    move(scheduler, motion, step_length());
+    report.newton_iterations = 1;
+    timer.add_to(totals.seconds_rest);
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                            const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
+    const double h = step_length();
+    double reference = 0;
+    for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
+        Timer timer;
+        move(scheduler, motion, h);
+        evaluated_ = motion.position;
+        timer.add_to(totals.seconds_rest);
+        linearise(scheduler, evaluated_.data(), loads, iteration > 0 || steps_since_renewal_ == 0);
+        timer.add_to(totals.seconds_forces);
+        const Residual residual = right_hand_side(scheduler, motion, loads, filter, false);
+        if (iteration == 0) {
+            const double load = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+                double square = 0;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const double force = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
+                    square += force * force;
+                }
+                return square;
+            });
+            reference = std::max(std::sqrt(residual.squared_norm), h * std::sqrt(load));
+        }
+        timer.add_to(totals.seconds_rest);
+        if (iteration > 0 && std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * reference) break;
+        solve(scheduler, filter, report);
+        timer.add_to(totals.seconds_solve);
+        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+            const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+            for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+                motion.velocity[i] += static_cast<double>(change_[i]);
+            }
+        });
+        ++report.newton_iterations;
+        timer.add_to(totals.seconds_rest);
+    }
+    Timer timer;
+    move(scheduler, motion, h);
+    timer.add_to(totals.seconds_rest);
+}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
+                                              std::span<const double> before_hold) {
+    const double h = step_length();
+    const bool has_holds = !before_hold.empty();
+    const double elastic =
+        has_holds
+            ? elements_->evaluate(scheduler, motion.position.data(),
+                                  {.rotation = !is_linear(), .force = true, .energy = true, .keep_gradients = false})
+            : elastic_energy(scheduler, motion.position.data());
+    const double kinetic = kinetic_energy(scheduler, motion.velocity);
+    if (has_holds) {
+        scheduler.for_each_block(numbering_->blocks(), [&](int block) { elements_->merge_force(block); });
+    }
+    const double work = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+        double sum = 0;
+        bool is_held = false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double moved = motion.position[at + axis] - start_position_[at + axis];
+            const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
+            sum += load * moved;
+            is_held = is_held || (has_holds && before_hold[at + axis] != start_velocity_[at + axis]);
+        }
+        if (!has_holds) return sum;
+        // The hold adds whatever the node's motion needs beyond inertia, loads and elastic force.
+        for (std::size_t axis = 0; axis < 3 && is_held; ++axis) {
+            const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
+            const double inertia = mass_[node] * (motion.velocity[at + axis] - before_hold[at + axis]) / h;
+            const double reaction = inertia - load - static_cast<double>(elements_->force()[at + axis]);
+            sum += reaction * (motion.position[at + axis] - start_position_[at + axis]);
+        }
+        return sum;
+    });
+    const double before = kinetic_ + elastic_, after = kinetic + elastic;
+    kinetic_ = kinetic;
+    elastic_ = elastic;
+    // Rounding of the energies: a sum of positive terms in Real.
+    const double rounding = 64 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * (before + after);
+    const double excess = after - before - work - rounding;
+    return std::isfinite(after) ? excess : HUGE_VAL;
+}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& scheduler, std::span<const double> velocity,
+                                                             const BodyLoads& loads) {
+    const double h = step_length();
+    for (std::size_t i = 0; i < evaluated_.size(); ++i) evaluated_[i] = start_position_[i] + h * velocity[i];
+    const double elastic = elastic_energy(scheduler, evaluated_.data());
+    return elastic + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+               double sum = 0;
+               for (std::size_t axis = 0; axis < 3; ++axis) {
+                   const double v = velocity[at + axis], change = v - start_velocity_[at + axis];
+                   const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
+                   sum += 0.5 * mass_[node] * (change * change + h * loads.rayleigh_mass * v * v) - h * load * v;
+               }
+               return sum;
+           });
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                               const ConstraintFilter& filter, std::span<const double> before_hold,
+                                               StepReport& report, StepTotals& totals) {
+    Timer timer;
+    const double kinetic = kinetic_, elastic = elastic_;
+    bool gained = growth(scheduler, motion, loads, before_hold) > 0;
+    timer.add_to(totals.seconds_forces);
+    if (!gained) return;
+
+    report.repeated = true;
+    const double h = step_length();
+    double potential = incremental_potential(scheduler, motion.velocity, loads);
+    const double potential_at_start = incremental_potential(scheduler, start_velocity_, loads);
+    if (!(potential < potential_at_start)) {
+        motion.velocity = start_velocity_;
+        potential = potential_at_start;
+    }
+    for (int iteration = 0; iteration < settings_.safeguard_iterations && gained; ++iteration) {
+        move(scheduler, motion, h);
+        evaluated_ = motion.position;
+        linearise(scheduler, evaluated_.data(), loads, true);
+        right_hand_side(scheduler, motion, loads, filter, false);
+        timer.add_to(totals.seconds_forces);
+        solve(scheduler, filter, report);
+        ++report.newton_iterations;
+        timer.add_to(totals.seconds_solve);
+        bool decreased = false;
+        double length = 1;
+        for (int halving = 0; halving < 12 && !decreased; ++halving, length /= 2) {
+            for (std::size_t i = 0; i < trial_velocity_.size(); ++i) {
+                trial_velocity_[i] = motion.velocity[i] + length * static_cast<double>(change_[i]);
+            }
+            const double trial = incremental_potential(scheduler, trial_velocity_, loads);
+            decreased = trial < potential;
+            if (decreased) potential = trial;
+        }
+        if (!decreased) break;
+        motion.velocity = trial_velocity_;
+        move(scheduler, motion, h);
+        kinetic_ = kinetic;
+        elastic_ = elastic;
+        gained = growth(scheduler, motion, loads, before_hold) > 0;
+        timer.add_to(totals.seconds_forces);
+    }
+    move(scheduler, motion, h);
+    matrix_is_known_ = false;
+    if (is_finite(scheduler, motion.velocity) && is_finite(scheduler, motion.position)) return;
+    // Nothing finite was found: the body stops where it was.
+    report.lost = true;
+    motion.position = start_position_;
+    std::fill(motion.velocity.begin(), motion.velocity.end(), 0.0);
+    forget();
+}
+
+template <class Real, class Accumulate>
+StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                                   const ConstraintFilter& filter, std::span<const double> before_hold,
+                                                   StepTotals& totals) {
+    StepReport report;
+    Timer timer;
+    if (settings_.energy_safeguard && !energy_is_known_) {
+        kinetic_ =
+            kinetic_energy(scheduler, before_hold.empty() ? std::span<const double>(motion.velocity) : before_hold);
+        elastic_ = elastic_energy(scheduler, motion.position.data());
+        energy_is_known_ = true;
+        timer.add_to(totals.seconds_forces);
+    }
+    start_position_ = motion.position;
+    start_velocity_ = motion.velocity;
+    timer.add_to(totals.seconds_rest);
+    if (settings_.linearisation == Linearisation::state) {
+        step_from_state(scheduler, motion, loads, filter, report, totals);
+    } else {
+        newton(scheduler, motion, loads, filter, report, totals);
+    }
+    if (settings_.energy_safeguard) {
+        safeguard(scheduler, motion, loads, filter, before_hold, report, totals);
+    }
+    if (settings_.integrator == Integrator::implicit_midpoint) {
+        Timer rest;
+        move(scheduler, motion, settings_.time_step);
+        for (std::size_t i = 0; i < start_velocity_.size(); ++i) {
+            motion.velocity[i] = 2 * motion.velocity[i] - start_velocity_[i];
+        }
+        rest.add_to(totals.seconds_rest);
+    }
+    steps_since_renewal_ = (steps_since_renewal_ + 1) % settings_.rotation_interval;
+
+    ++totals.steps;
+    totals.newton_iterations += report.newton_iterations;
+    totals.conjugate_gradient_iterations += report.conjugate_gradient_iterations;
+    totals.repeats += report.repeated ? 1 : 0;
+    totals.lost += report.lost ? 1 : 0;
+    totals.coarse_refreshes = preconditioner_->coarse_refreshes();
+    totals.coarse_failures = preconditioner_->coarse_failures();
+    return report;
+}
+
+template <class Real, class Accumulate>
+Energies ImplicitStep<Real, Accumulate>::energies(Scheduler& scheduler, const BodyMotion& motion,
+                                                  const BodyLoads& loads, std::span<const double> rest_position) {
+    Energies energies;
+    energies.kinetic = kinetic_energy(scheduler, motion.velocity);
+    energies.elastic = elastic_energy(scheduler, motion.position.data());
+    energies.gravity = -sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+        double work = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            work += mass_[node] * loads.gravity[axis] * (motion.position[at + axis] - rest_position[at + axis]);
+        }
+        return work;
+    });
+    return energies;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::apply_matrix(Scheduler& scheduler, const BodyMotion& motion,
+                                                  const BodyLoads& loads, std::span<const Real> z,
+                                                  std::span<Real> out) {
+    linearise(scheduler, motion.position.data(), loads, true);
+    matrix_->product(scheduler, z.data());
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) { matrix_->merge(block); });
+    std::copy_n(matrix_->buffer(), out.size(), out.begin());
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::forget() noexcept {
+    energy_is_known_ = false;
+    matrix_is_known_ = false;
+    steps_since_renewal_ = 0;
+    preconditioner_->forget_coarse();
+}
+
+template <class Real, class Accumulate>
+std::size_t ImplicitStep<Real, Accumulate>::bytes() const noexcept {
+    using kernels::heap_bytes;
+    return heap_bytes(mass_) + matrix_->bytes() + preconditioner_->bytes() + conjugate_gradients_.bytes() +
+           heap_bytes(start_position_) + heap_bytes(start_velocity_) + heap_bytes(trial_velocity_) +
+           heap_bytes(evaluated_) + heap_bytes(right_hand_side_) + heap_bytes(change_) + heap_bytes(product_input_) +
+           heap_bytes(partial_);
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::save(std::vector<double>& numbers) const {
+    numbers.insert(numbers.end(),
+                   {kinetic_, elastic_, energy_is_known_ ? 1.0 : 0.0, matrix_is_known_ ? 1.0 : 0.0,
+                    static_cast<double>(steps_since_renewal_), matrix_->factors().mass, matrix_->factors().stiffness});
+    preconditioner_->save(numbers);
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::restore(Scheduler& scheduler, std::span<const double>& numbers) {
+    kinetic_ = numbers[0];
+    elastic_ = numbers[1];
+    energy_is_known_ = numbers[2] != 0;
+    matrix_is_known_ = numbers[3] != 0;
+    steps_since_renewal_ = static_cast<int>(numbers[4]);
+    if (matrix_is_known_) matrix_->assemble(scheduler, {.mass = numbers[5], .stiffness = numbers[6]});
+    numbers = numbers.subspan(7);
+    preconditioner_->restore(scheduler, numbers, matrix_is_known_);
+}
+
+template class ImplicitStep<float, float>;
+template class ImplicitStep<float, double>;
+template class ImplicitStep<double, double>;
+
+}  // namespace lancet::runtime

@@ -1,0 +1,420 @@
+#include "lancet/runtime/simulate/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "lancet/kernels/error.hpp"
+#include "lancet/runtime/integrate/implicit_step.hpp"
+
+namespace lancet::runtime {
+
+namespace {
+
+kernels::NodeNumbering number(const Scene& scene, const Settings& settings) {
+    const std::span<const Point> nodes = scene.mesh.nodes();
+    std::vector<std::uint8_t> fixed(nodes.size(), 0);
+    for (const std::int32_t node : scene.fixed_nodes) {
+        if (node < 0 || static_cast<std::size_t>(node) >= nodes.size()) {
+            throw Error("scene: fixed node " + std::to_string(node) + "; the mesh has nodes 0 to " +
+                        std::to_string(nodes.size() - 1));
+        }
+        fixed[node] = 1;
+    }
+    const mesh::Ordering ordering = mesh::order(scene.mesh, settings.ordering);
+    return kernels::number_nodes(nodes, scene.mesh.tetrahedra(), fixed, ordering.new_of_node, settings.numbering);
+}
+
+/// The materials of the scene as one array, and for each element its place there.
+struct ElementMaterials {
+    std::vector<kernels::ElasticParameters> parameters;
+    std::vector<std::int32_t> of_element;
+};
+
+ElementMaterials element_materials(const Scene& scene) {
+    if (!scene.materials.contains(0)) throw Error("scene: region 0 has no material");
+    ElementMaterials materials;
+    std::map<int, std::int32_t> place;
+    for (const auto& [region, material] : scene.materials) {
+        place[region] = static_cast<std::int32_t>(materials.parameters.size());
+        materials.parameters.push_back(elastic_parameters(material));
+    }
+    for (const std::int32_t region : scene.mesh.regions()) {
+        const auto found = place.find(region);
+        materials.of_element.push_back(found != place.end() ? found->second : place[0]);
+    }
+    return materials;
+}
+
+std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
+                                 const kernels::NodeNumbering& numbering) {
+    std::vector<double> mass(static_cast<std::size_t>(numbering.node_count), 0.0);
+    const std::span<const mesh::Tetrahedron> tetrahedra = scene.mesh.tetrahedra();
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        const double quarter = materials.parameters[materials.of_element[e]].density *
+                               kernels::tetrahedron_geometry(scene.mesh.nodes(), tetrahedra[e]).volume / 4;
+        for (const std::int32_t node : tetrahedra[e]) mass[numbering.internal_of_user[node]] += quarter;
+    }
+    return mass;
+}
+
+struct Hold {
+    std::int32_t node;  ///< internal numbering
+    Point target;
+    Point direction;  ///< zero: all three
+};
+
+void require_finite(std::span<const Point> values, const char* what) {
+    for (std::size_t node = 0; node < values.size(); ++node) {
+        for (const double value : values[node]) {
+            if (!std::isfinite(value)) {
+                throw Error(std::string(what) + " of node " + std::to_string(node) + " is not finite");
+            }
+        }
+    }
+}
+
+}  // namespace
+
+template <class Real, class Accumulate>
+class BodyOf final : public DeformableBody {
+  public:
+    BodyOf(const Scene& scene, const Settings& settings, Scheduler& scheduler)
+        : settings_(settings),
+          element_count_(scene.mesh.tetrahedra().size()),
+          numbering_(number(scene, settings)),
+          elements_(make_elements(scene, settings, numbering_)),
+          step_(elements_,
+                {.tetrahedra = scene.mesh.tetrahedra(),
+                 .nodal_mass = nodal_masses(scene, element_materials(scene), numbering_),
+                 .mass = settings.mass,
+                 .scatter = settings.scatter},
+                settings) {
+        const std::size_t numbers = 4 * static_cast<std::size_t>(numbering_.node_count);
+        motion_.position.assign(numbers, 0.0);
+        motion_.velocity.assign(numbers, 0.0);
+        loads_.gravity = scene.gravity;
+        loads_.nodal.assign(numbers, 0.0);
+        loads_.rayleigh_mass = scene.rayleigh_mass;
+        loads_.rayleigh_stiffness = scene.rayleigh_stiffness;
+        before_hold_.assign(numbers, 0.0);
+        mass_ = nodal_masses(scene, element_materials(scene), numbering_);
+        scatter_to_internal(scene.mesh.nodes(), motion_.position);
+        // Unused nodes stand where the first node stands: nothing far away enters a sum.
+        for (std::size_t node = 0; node < static_cast<std::size_t>(numbering_.node_count); ++node) {
+            if (numbering_.user_of_internal[node] >= 0) continue;
+            std::copy_n(scene.mesh.nodes().front().begin(), 3, &motion_.position[4 * node]);
+        }
+        rest_position_ = motion_.position;
+        elements_.reset(scheduler, motion_.position.data());
+    }
+
+    StepReport step(Scheduler& scheduler) override {
+        if (!holds_.empty()) {
+            before_hold_ = motion_.velocity;
+            apply_holds();
+        }
+        const StepReport report =
+            step_.advance(scheduler, motion_, loads_, filter_,
+                          holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
+        time_ += settings_.time_step;
+        return report;
+    }
+
+    std::size_t nodes() const noexcept override { return numbering_.internal_of_user.size(); }
+    std::size_t elements() const noexcept override { return element_count_; }
+    double time() const noexcept override { return time_; }
+    void positions(std::span<Point> out) const override { gather_to_user(motion_.position, out); }
+    void velocities(std::span<Point> out) const override { gather_to_user(motion_.velocity, out); }
+
+    void set_positions(std::span<const Point> positions) override {
+        require_count(positions.size(), "positions");
+        require_finite(positions, "position");
+        for (std::size_t node = 0; node < positions.size(); ++node) {
+            const std::int32_t internal = numbering_.internal_of_user[node];
+            if (!numbering_.is_free(internal)) continue;
+            std::copy_n(positions[node].begin(), 3, &motion_.position[4 * static_cast<std::size_t>(internal)]);
+        }
+        step_.forget();
+    }
+
+    void set_velocities(std::span<const Point> velocities) override {
+        require_count(velocities.size(), "velocities");
+        require_finite(velocities, "velocity");
+        for (std::size_t node = 0; node < velocities.size(); ++node) {
+            const std::int32_t internal = numbering_.internal_of_user[node];
+            if (!numbering_.is_free(internal)) continue;
+            std::copy_n(velocities[node].begin(), 3, &motion_.velocity[4 * static_cast<std::size_t>(internal)]);
+        }
+        step_.forget_energy();
+    }
+
+    void set_loads(std::span<const Point> loads) override {
+        require_count(loads.size(), "loads");
+        require_finite(loads, "load");
+        scatter_to_internal(loads, loads_.nodal);
+    }
+
+    void hold(std::int32_t node, const Point& target) override { add_hold(node, target, {0, 0, 0}); }
+
+    void hold(std::int32_t node, const Point& target, const Point& direction) override {
+        const double length = std::hypot(direction[0], direction[1], direction[2]);
+        if (!(std::abs(length - 1) < 1e-6)) {
+            throw Error("hold: the direction has length " + std::to_string(length) + "; expected 1");
+        }
+        add_hold(node, target, direction);
+    }
+
+    void release(std::int32_t node) override {
+        const std::int32_t internal = internal_node(node);
+        std::erase_if(holds_, [&](const Hold& hold) { return hold.node == internal; });
+        rebuild_filter();
+    }
+
+    void release_all() override {
+        holds_.clear();
+        rebuild_filter();
+    }
+
+    Energies energies(Scheduler& scheduler) override {
+        return step_.energies(scheduler, motion_, loads_, rest_position_);
+    }
+
+    void elastic_forces(Scheduler& scheduler, std::span<Point> out) override {
+        require_count(out.size(), "forces");
+        elements_.evaluate(scheduler, motion_.position.data(),
+                           {.rotation = settings_.model != ElementModel::linear, .force = true});
+        for (int block = 0; block < numbering_.blocks(); ++block) elements_.merge_force(block);
+        for (std::size_t node = 0; node < out.size(); ++node) {
+            const std::int32_t internal = numbering_.internal_of_user[node];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                out[node][axis] = numbering_.is_free(internal)
+                                      ? static_cast<double>(elements_.force()[4 * internal + static_cast<int>(axis)])
+                                      : 0.0;
+            }
+        }
+        step_.forget_matrix();
+    }
+
+    void apply_matrix(Scheduler& scheduler, std::span<const Point> z, std::span<Point> out) override {
+        require_count(z.size(), "values");
+        require_count(out.size(), "results");
+        kernels::AlignedVector<Real> in(motion_.position.size(), Real(0)), result(in.size());
+        for (std::size_t node = 0; node < z.size(); ++node) {
+            const std::int32_t internal = numbering_.internal_of_user[node];
+            if (!numbering_.is_free(internal)) continue;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                in[4 * static_cast<std::size_t>(internal) + axis] = static_cast<Real>(z[node][axis]);
+            }
+        }
+        step_.apply_matrix(scheduler, motion_, loads_, in, result);
+        step_.forget_matrix();
+        for (std::size_t node = 0; node < out.size(); ++node) {
+            const std::int32_t internal = numbering_.internal_of_user[node];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                out[node][axis] = numbering_.is_free(internal)
+                                      ? static_cast<double>(result[4 * static_cast<std::size_t>(internal) + axis])
+                                      : 0.0;
+            }
+        }
+    }
+
+    double nodal_mass(std::int32_t node) const override { return mass_[internal_node(node)]; }
+
+    BodyState save() const override {
+        BodyState state;
+        state.numbers_ = {static_cast<double>(element_count_), static_cast<double>(motion_.position.size()),
+                          static_cast<double>(elements_.quaternions().size_bytes()),
+                          static_cast<double>(elements_.rotated_gradients().size_bytes()), time_};
+        for (const auto* vector : {&motion_.position, &motion_.velocity, &loads_.nodal}) {
+            state.numbers_.insert(state.numbers_.end(), vector->begin(), vector->end());
+        }
+        step_.save(state.numbers_);
+        for (const auto span : {elements_.quaternions(), elements_.rotated_gradients()}) {
+            const auto bytes = std::as_bytes(span);
+            state.solver_.insert(state.solver_.end(), bytes.begin(), bytes.end());
+        }
+        state.holds_.reserve(holds_.size());
+        for (const Hold& hold : holds_) {
+            state.holds_.push_back({static_cast<double>(hold.node), hold.target[0], hold.target[1], hold.target[2],
+                                    hold.direction[0], hold.direction[1], hold.direction[2]});
+        }
+        return state;
+    }
+
+    void restore(Scheduler& scheduler, const BodyState& state) override {
+        std::span<const double> numbers = state.numbers_;
+        const bool fits = numbers.size() > 5 && numbers[0] == static_cast<double>(element_count_) &&
+                          numbers[1] == static_cast<double>(motion_.position.size()) &&
+                          numbers[2] == static_cast<double>(elements_.quaternions().size_bytes()) &&
+                          numbers[3] == static_cast<double>(elements_.rotated_gradients().size_bytes()) &&
+                          state.numbers_.size() == save().numbers_.size();
+        if (!fits) throw Error("restore: the state was saved by a body of another scene or other settings");
+        time_ = numbers[4];
+        numbers = numbers.subspan(5);
+        for (auto* vector : {&motion_.position, &motion_.velocity, &loads_.nodal}) {
+            std::copy_n(numbers.begin(), vector->size(), vector->begin());
+            numbers = numbers.subspan(vector->size());
+        }
+        const std::byte* bytes = state.solver_.data();
+        for (const auto span : {elements_.quaternions(), elements_.rotated_gradients()}) {
+            std::memcpy(span.data(), bytes, span.size_bytes());
+            bytes += span.size_bytes();
+        }
+        holds_.clear();
+        for (const auto& h : state.holds_) {
+            holds_.push_back({static_cast<std::int32_t>(h[0]), {h[1], h[2], h[3]}, {h[4], h[5], h[6]}});
+        }
+        rebuild_filter();
+        step_.restore(scheduler, numbers);
+    }
+
+    const Settings& settings() const noexcept override { return settings_; }
+    const StepTotals& totals() const noexcept override { return totals_; }
+    void reset_totals() noexcept override { totals_ = {}; }
+
+    std::size_t bytes() const noexcept override {
+        using kernels::heap_bytes;
+        return numbering_.bytes() + elements_.bytes() + step_.bytes() + heap_bytes(motion_.position) +
+               heap_bytes(motion_.velocity) + heap_bytes(loads_.nodal) + heap_bytes(before_hold_) + heap_bytes(mass_) +
+               heap_bytes(rest_position_);
+    }
+    int blocks() const noexcept override { return numbering_.blocks(); }
+    int coarse_unknowns() const noexcept override {
+        return step_.preconditioner().coarse() == nullptr ? 0 : step_.preconditioner().coarse()->unknowns();
+    }
+    ProductWork product_work() const noexcept override {
+        const auto work = step_.matrix().work();
+        return {work.flops, work.bytes};
+    }
+
+  private:
+    static ElasticElements<Real> make_elements(const Scene& scene, const Settings& settings,
+                                               const kernels::NodeNumbering& numbering) {
+        const kernels::KernelSet<Real>& kernels = kernels::kernel_set<Real>(settings.instruction_set);
+        const ElementMaterials materials = element_materials(scene);
+        return ElasticElements<Real>(
+            kernels,
+            kernels::make_element_batches<Real>(scene.mesh.nodes(), scene.mesh.tetrahedra(), materials.of_element,
+                                                materials.parameters, numbering, settings.scatter, kernels.width),
+            numbering, gradient_layout(settings.matrix), settings.rotation);
+    }
+
+    std::int32_t internal_node(std::int32_t node) const {
+        if (node < 0 || static_cast<std::size_t>(node) >= nodes()) {
+            throw Error("node " + std::to_string(node) + " does not exist; the body has nodes 0 to " +
+                        std::to_string(nodes() - 1));
+        }
+        return numbering_.internal_of_user[node];
+    }
+
+    void require_count(std::size_t count, const char* what) const {
+        if (count != nodes()) {
+            throw Error(std::to_string(count) + " " + what + " given; the body has " + std::to_string(nodes()) +
+                        " nodes");
+        }
+    }
+
+    void scatter_to_internal(std::span<const Point> values, kernels::AlignedVector<double>& nodal) const {
+        for (std::size_t node = 0; node < values.size(); ++node) {
+            std::copy_n(values[node].begin(), 3,
+                        &nodal[4 * static_cast<std::size_t>(numbering_.internal_of_user[node])]);
+        }
+    }
+
+    void gather_to_user(const kernels::AlignedVector<double>& nodal, std::span<Point> values) const {
+        require_count(values.size(), "places");
+        for (std::size_t node = 0; node < values.size(); ++node) {
+            std::copy_n(&nodal[4 * static_cast<std::size_t>(numbering_.internal_of_user[node])], 3,
+                        values[node].begin());
+        }
+    }
+
+    void add_hold(std::int32_t node, const Point& target, const Point& direction) {
+        const std::int32_t internal = internal_node(node);
+        if (!numbering_.is_free(internal)) {
+            throw Error("hold: node " + std::to_string(node) + " is fixed for good");
+        }
+        require_finite(std::span(&target, 1), "hold: target");
+        const auto held =
+            std::find_if(holds_.begin(), holds_.end(), [&](const Hold& hold) { return hold.node == internal; });
+        if (held != holds_.end()) {
+            const bool same_direction = held->direction == direction;
+            *held = {internal, target, direction};
+            if (same_direction) return;
+        } else {
+            holds_.push_back({internal, target, direction});
+        }
+        rebuild_filter();
+    }
+
+    void rebuild_filter() {
+        std::vector<NodeConstraint> constraints;
+        constraints.reserve(holds_.size());
+        for (const Hold& hold : holds_) {
+            const Point& n = hold.direction;
+            const bool is_free_across = n != Point{0, 0, 0};
+            constraints.push_back(
+                {hold.node, is_free_across ? std::array<double, 6>{1 - n[0] * n[0], 1 - n[1] * n[1], 1 - n[2] * n[2],
+                                                                   -n[0] * n[1], -n[0] * n[2], -n[1] * n[2]}
+                                           : std::array<double, 6>{}});
+        }
+        filter_ = ConstraintFilter(std::move(constraints), numbering_);
+    }
+
+    /// Gives held nodes the velocity that brings them to their targets in one step, in the held directions.
+    void apply_holds() {
+        for (const Hold& hold : holds_) {
+            double* velocity = &motion_.velocity[4 * static_cast<std::size_t>(hold.node)];
+            const double* position = &motion_.position[4 * static_cast<std::size_t>(hold.node)];
+            Point wanted;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                wanted[axis] = (hold.target[axis] - position[axis]) / settings_.time_step;
+            }
+            const Point& n = hold.direction;
+            if (n == Point{0, 0, 0}) {
+                std::copy_n(wanted.begin(), 3, velocity);
+                continue;
+            }
+            double along = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) along += n[axis] * (wanted[axis] - velocity[axis]);
+            for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis] += along * n[axis];
+        }
+    }
+
+    Settings settings_;
+    std::size_t element_count_;
+    kernels::NodeNumbering numbering_;
+    ElasticElements<Real> elements_;
+    ImplicitStep<Real, Accumulate> step_;
+    BodyMotion motion_;
+    BodyLoads loads_;
+    kernels::AlignedVector<double> before_hold_;
+    kernels::AlignedVector<double> rest_position_;
+    std::vector<double> mass_;
+    std::vector<Hold> holds_;
+    ConstraintFilter filter_;
+    StepTotals totals_;
+    double time_ = 0;
+};
+
+std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler) {
+    validate(settings);
+    if (scene.mesh.tetrahedra().empty()) throw Error("scene: the mesh has no elements");
+    for (const double value :
+         {scene.gravity[0], scene.gravity[1], scene.gravity[2], scene.rayleigh_mass, scene.rayleigh_stiffness}) {
+        if (!std::isfinite(value)) throw Error("scene: gravity and damping must be finite");
+    }
+    if (scene.rayleigh_mass < 0 || scene.rayleigh_stiffness < 0) throw Error("scene: damping must not be negative");
+    switch (settings.scalar) {
+        case ScalarMode::single_precision:
+            return std::make_unique<BodyOf<float, float>>(scene, settings, scheduler);
+        case ScalarMode::mixed:
+            return std::make_unique<BodyOf<float, double>>(scene, settings, scheduler);
+        default:
+            return std::make_unique<BodyOf<double, double>>(scene, settings, scheduler);
+    }
+}
+
+}  // namespace lancet::runtime

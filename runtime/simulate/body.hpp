@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lancet/runtime/schedule/scheduler.hpp"
+#include "lancet/runtime/simulate/scene.hpp"
+#include "lancet/runtime/simulate/settings.hpp"
+
+namespace lancet::runtime {
+
+using mesh::Point;
+
+/// How one step went.
+struct StepReport {
+    int newton_iterations = 0;
+    int conjugate_gradient_iterations = 0;
+    double conjugate_gradient_residual = 0;  ///< of the last solve; see ConjugateGradientResult
+    bool repeated = false;                   ///< the energy safeguard repeated the step
+    bool lost = false;                       ///< no finite state was found: the body was stopped where it was
+};
+
+/// Sums over all steps so far.
+struct StepTotals {
+    std::int64_t steps = 0;
+    std::int64_t newton_iterations = 0;
+    std::int64_t conjugate_gradient_iterations = 0;
+    std::int64_t repeats = 0;
+    std::int64_t lost = 0;
+    std::int64_t coarse_refreshes = 0;
+    std::int64_t coarse_failures = 0;
+    double seconds_forces = 0;  ///< rotations, forces, assembly, energies
+    double seconds_solve = 0;   ///< preconditioner and conjugate gradients
+    double seconds_rest = 0;    ///< right-hand side and state update
+};
+
+/// Energies in joules.
+struct Energies {
+    double kinetic = 0;
+    double elastic = 0;
+    double gravity = 0;  ///< zero at rest
+    double total() const noexcept { return kinetic + elastic + gravity; }
+};
+
+/// A copy of everything that determines how a body goes on: a body of the same scene and settings that restores it
+/// repeats the original bit for bit.
+class BodyState {
+  public:
+    BodyState() = default;
+
+  private:
+    template <class Real, class Accumulate>
+    friend class BodyOf;
+    std::vector<double> numbers_;
+    std::vector<std::byte> solver_;
+    std::vector<std::array<double, 7>> holds_;
+};
+
+/// A deformable body that is stepped through time. Nodes are addressed as in the scene's mesh; the numbering inside,
+/// the scalar types, the instruction set and the operator are hidden. After construction no call but save allocates.
+///
+/// A step of implicit Euler solves, with x^ = x_n + dt v_n (the prediction),
+///     (M + dt D + dt^2 K(x^)) dv = dt (f_int(x^) + f_ext) - dt D v_n,  v_n+1 = v_n + dv,  x_n+1 = x^ + dt dv,
+/// and goes on from there with Newton iterations if asked for. If the energy then exceeds what it was plus the work of
+/// loads and holds, the step is repeated from the new state with a line search on the incremental potential
+/// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads.
+class DeformableBody {
+  public:
+    virtual ~DeformableBody() = default;
+
+    virtual StepReport step(Scheduler& scheduler) = 0;
+
+    virtual std::size_t nodes() const noexcept = 0;
+    virtual std::size_t elements() const noexcept = 0;
+    virtual double time() const noexcept = 0;
+    virtual void positions(std::span<Point> out) const = 0;
+    virtual void velocities(std::span<Point> out) const = 0;
+    /// Moves the body; rotations start anew from where they are. Fixed nodes keep their places.
+    virtual void set_positions(std::span<const Point> positions) = 0;
+    virtual void set_velocities(std::span<const Point> velocities) = 0;
+    /// Dead loads on nodes, newtons, one per node; they stay until replaced. Loads on fixed nodes do no work.
+    virtual void set_loads(std::span<const Point> loads) = 0;
+
+    /// From the next step on the node moves towards `target` so as to be there at the end of the step, in the
+    /// directions normal to nothing (all three) or, with a unit `direction`, along it alone. Replaces an earlier hold
+    /// of the node. Throws lancet::Error for a fixed node, or a direction that is not of unit length.
+    virtual void hold(std::int32_t node, const Point& target) = 0;
+    virtual void hold(std::int32_t node, const Point& target, const Point& direction) = 0;
+    virtual void release(std::int32_t node) = 0;
+    virtual void release_all() = 0;
+
+    /// Energies now. Gravity is measured from the rest position.
+    virtual Energies energies(Scheduler& scheduler) = 0;
+    /// Elastic force on each node, newtons; zero at fixed nodes.
+    virtual void elastic_forces(Scheduler& scheduler, std::span<Point> out) = 0;
+    /// A z for the step matrix at the present positions, in N s (z in m / s): for tests and studies. z is taken as zero
+    /// at fixed nodes; a filter of held nodes is not applied.
+    virtual void apply_matrix(Scheduler& scheduler, std::span<const Point> z, std::span<Point> out) = 0;
+    virtual double nodal_mass(std::int32_t node) const = 0;
+
+    virtual BodyState save() const = 0;
+    /// Throws lancet::Error if the state is of another scene or other settings.
+    virtual void restore(Scheduler& scheduler, const BodyState& state) = 0;
+
+    virtual const Settings& settings() const noexcept = 0;
+    virtual const StepTotals& totals() const noexcept = 0;
+    virtual void reset_totals() noexcept = 0;
+    /// Bytes of all arrays of the body, without the scene's mesh.
+    virtual std::size_t bytes() const noexcept = 0;
+    virtual int blocks() const noexcept = 0;
+    virtual int coarse_unknowns() const noexcept = 0;
+    /// Operations and bytes of one product with the step matrix.
+    struct ProductWork {
+        double flops = 0;
+        double bytes = 0;
+    };
+    virtual ProductWork product_work() const noexcept = 0;
+};
+
+/// Builds a body. The scheduler is used to set it up; each step takes one of its own. Throws lancet::Error for a scene
+/// or settings that make no sense.
+std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler);
+
+}  // namespace lancet::runtime

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string_view>
+
+#include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/kernels/layout/node_numbering.hpp"
+#include "lancet/kernels/layout/scatter_plan.hpp"
+#include "lancet/mesh/order.hpp"
+#include "lancet/runtime/solve/conjugate_gradients.hpp"
+
+namespace lancet::runtime {
+
+/// What an element's energy is a function of.
+enum class ElementModel {
+    linear,       ///< small strain: a constant operator, no rotations
+    corotational  ///< small strain in the frame of the element's rotation
+};
+
+/// The arithmetic of a solve. Positions and velocities are double in all of them, and differences of positions are
+/// formed in double.
+enum class ScalarMode {
+    single_precision,  ///< "float": forces, operator, preconditioner and vectors in float
+    mixed,             ///< forces and operator in float, residual and solution of the linear system in double
+    double_precision   ///< "double"
+};
+std::string_view to_string(ScalarMode mode) noexcept;
+ScalarMode scalar_mode_from_string(std::string_view name);
+
+/// Where the step is linearised first.
+enum class Linearisation {
+    state,      ///< at x_n: the original method
+    prediction  ///< at x_n + dt v_n: as cheap, and some thirty times more accurate on the Bar
+};
+std::string_view to_string(Linearisation linearisation) noexcept;
+
+enum class Integrator { implicit_euler, implicit_midpoint };
+
+/// How a body is computed. The defaults are the fastest accurate choice for interactive steps.
+struct Settings {
+    double time_step = 0.04;  ///< s
+    Integrator integrator = Integrator::implicit_euler;
+    ElementModel model = ElementModel::corotational;
+    MassKind mass = MassKind::lumped;
+    ScalarMode scalar = ScalarMode::single_precision;
+    kernels::InstructionSet instruction_set = kernels::active_instruction_set();
+    OperatorKind matrix = OperatorKind::edge_blocks;
+    kernels::ScatterStrategy scatter = kernels::ScatterStrategy::private_copies;
+    RotationSettings rotation{};
+    int rotation_interval = 1;  ///< rotations and operator are renewed every so many steps
+    Linearisation linearisation = Linearisation::prediction;
+    ConjugateGradientSettings conjugate_gradients{};
+    PreconditionerKind preconditioner = PreconditionerKind::coarse;
+    double coarse_change = 0.1;      ///< see Preconditioner
+    int newton_iterations = 1;       ///< at most; 1: linearised once
+    double newton_tolerance = 1e-8;  ///< of the residual against that at the first linearisation and the loads
+    bool energy_safeguard = true;    ///< repeat a step that gained energy without work (see DeformableBody::step)
+    int safeguard_iterations = 8;    ///< Newton iterations of such a repeat, at most
+    mesh::OrderingKind ordering = mesh::OrderingKind::hilbert;
+    kernels::NumberingOptions numbering{};
+};
+
+/// Throws lancet::Error for settings that make no sense or contradict each other.
+void validate(const Settings& settings);
+
+}  // namespace lancet::runtime

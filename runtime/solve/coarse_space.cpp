@@ -1,0 +1,486 @@
+#include "lancet/runtime/solve/coarse_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+
+namespace lancet::runtime {
+
+namespace {
+
+using Matrix3 = Eigen::Matrix3d;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector3 = Eigen::Vector3d;
+
+Matrix3 cross_matrix(const Vector3& r) {
+    Matrix3 m;
+    m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+    return m;
+}
+
+/// An edge between two aggregates, or between an aggregate and the ground.
+struct CrossingEdge {
+    std::int32_t value;  ///< entry * 9 * width + lane
+    std::int32_t row;
+    std::int32_t column;
+    std::int32_t pair;  ///< of the block's pairs; -1: ground
+};
+
+/// Contributions of one block's edges to a pair of aggregates (first owns the rows).
+struct AggregatePair {
+    std::int32_t first;
+    std::int32_t second;
+    Matrix6 coupling;         ///< (first, second)
+    Matrix6 second_diagonal;  ///< (second, second)
+};
+
+constexpr int modes = 6;
+
+}  // namespace
+
+struct CoarseMatrices {
+    std::vector<std::vector<CrossingEdge>> crossing;  ///< [block]
+    std::vector<std::vector<AggregatePair>> pairs;    ///< [block]
+    std::vector<Matrix6> diagonal;                    ///< [aggregate]
+    std::vector<Matrix6> basis;  ///< [aggregate] raw modes to orthonormal ones; zero columns left out
+
+    Eigen::VectorXd scale;
+    Eigen::VectorXd right_hand_side;
+    Eigen::VectorXd solution;
+
+    // Dense: the inverse in terms of raw modes.
+    Eigen::MatrixXd dense;
+    Eigen::MatrixXd inverse;
+
+    // Sparse: upper triangle, permuted for little fill.
+    Eigen::SparseMatrix<double> sparse;
+    Eigen::VectorXi place;  ///< [aggregate] its place in the elimination order
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>> factor;
+    bool is_dense = true;
+    bool is_usable = false;
+};
+
+template <class Real>
+CoarseSpace<Real>::CoarseSpace(const kernels::NodeNumbering& numbering, const BlockMatrix<Real>& edges)
+    : numbering_(&numbering),
+      edges_(&edges),
+      aggregate_of_(static_cast<std::size_t>(numbering.node_count), -1),
+      offset_(static_cast<std::size_t>(numbering.node_count) * 4),
+      restricted_(static_cast<std::size_t>(numbering.aggregates()) * modes),
+      correction_(restricted_.size()),
+      change_(static_cast<std::size_t>(numbering.blocks())),
+      matrices_(std::make_unique<CoarseMatrices>()) {
+    CoarseMatrices& m = *matrices_;
+    for (int aggregate = 0; aggregate < numbering.aggregates(); ++aggregate) {
+        for (std::int32_t node = numbering.aggregate_begin[aggregate]; node < numbering.aggregate_begin[aggregate + 1];
+             ++node) {
+            aggregate_of_[node] = aggregate;
+        }
+    }
+    m.diagonal.resize(static_cast<std::size_t>(numbering.aggregates()));
+    m.basis.resize(m.diagonal.size());
+    m.crossing.resize(static_cast<std::size_t>(numbering.blocks()));
+    m.pairs.resize(m.crossing.size());
+
+    const kernels::RowPattern& pattern = edges.pattern();
+    for (int block = 0; block < numbering.blocks(); ++block) {
+        std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> pair_of;
+        for (std::int32_t chunk = pattern.block_chunk_begin[block]; chunk < pattern.block_chunk_begin[block + 1];
+             ++chunk) {
+            for (std::int32_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
+                 ++entry) {
+                for (int lane = 0; lane < pattern.width; ++lane) {
+                    const std::int32_t row = pattern.row[chunk * pattern.width + lane];
+                    const std::int32_t column = pattern.column[entry * pattern.width + lane];
+                    const std::int32_t a = aggregate_of_[row], b = aggregate_of_[column];
+                    if (a == b) continue;
+                    std::int32_t pair = -1;
+                    if (b >= 0) {
+                        const auto [found, is_new] =
+                            pair_of.try_emplace({a, b}, static_cast<std::int32_t>(m.pairs[block].size()));
+                        if (is_new) m.pairs[block].push_back({a, b, Matrix6::Zero(), Matrix6::Zero()});
+                        pair = found->second;
+                    }
+                    m.crossing[block].push_back({entry * 9 * pattern.width + lane, row, column, pair});
+                }
+            }
+        }
+    }
+
+    const int unknowns = modes * numbering.aggregates();
+    m.scale.resize(unknowns);
+    m.right_hand_side.resize(unknowns);
+    m.solution.resize(unknowns);
+    m.is_dense = unknowns <= dense_limit;
+    if (m.is_dense) {
+        m.dense.resize(unknowns, unknowns);
+        m.inverse.resize(unknowns, unknowns);
+        return;
+    }
+    // The pattern of the coarse matrix by aggregates, its elimination order, and the permuted upper triangle.
+    std::vector<Eigen::Triplet<double>> graph;
+    for (int a = 0; a < numbering.aggregates(); ++a) graph.emplace_back(a, a, 1.0);
+    for (const auto& pairs : m.pairs) {
+        for (const AggregatePair& pair : pairs) {
+            graph.emplace_back(pair.first, pair.second, 1.0);
+            graph.emplace_back(pair.second, pair.first, 1.0);
+        }
+    }
+    Eigen::SparseMatrix<double> adjacency(numbering.aggregates(), numbering.aggregates());
+    adjacency.setFromTriplets(graph.begin(), graph.end());
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+    Eigen::AMDOrdering<int>()(adjacency, order);
+    m.place.resize(numbering.aggregates());
+    for (int k = 0; k < numbering.aggregates(); ++k) m.place[order.indices()[k]] = k;
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int column = 0; column < adjacency.outerSize(); ++column) {
+        for (Eigen::SparseMatrix<double>::InnerIterator it(adjacency, column); it; ++it) {
+            const int row_place = m.place[it.row()], column_place = m.place[column];
+            if (row_place > column_place) continue;
+            for (int i = 0; i < modes; ++i) {
+                for (int j = row_place == column_place ? i : 0; j < modes; ++j) {
+                    entries.emplace_back(modes * row_place + i, modes * column_place + j, 1.0);
+                }
+            }
+        }
+    }
+    m.sparse.resize(unknowns, unknowns);
+    m.sparse.setFromTriplets(entries.begin(), entries.end());
+    m.sparse.makeCompressed();
+    m.factor.analyzePattern(m.sparse);
+}
+
+template <class Real>
+CoarseSpace<Real>::~CoarseSpace() = default;
+template <class Real>
+CoarseSpace<Real>::CoarseSpace(CoarseSpace&&) noexcept = default;
+
+template <class Real>
+double CoarseSpace<Real>::change(Scheduler& scheduler, const double* positions) {
+    if (!is_fresh_) return std::numeric_limits<double>::infinity();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        double largest = 0;
+        for (std::int32_t a = numbering_->block_aggregate_begin[block];
+             a < numbering_->block_aggregate_begin[block + 1]; ++a) {
+            const std::int32_t begin = numbering_->aggregate_begin[a], end = numbering_->aggregate_begin[a + 1];
+            // sum |d - mean d|^2 for d = x - r' is sum |d|^2 - |sum d|^2 / n, since the offsets r' have mean zero.
+            Vector3 sum = Vector3::Zero();
+            double squares = 0, size = 0;
+            int count = 0;
+            const Vector3 origin = Eigen::Map<const Vector3>(positions + 4 * static_cast<std::int64_t>(begin));
+            for (std::int32_t node = begin; node < end; ++node) {
+                if (numbering_->user_of_internal[node] < 0) continue;
+                const std::int64_t at = 4 * static_cast<std::int64_t>(node);
+                const Vector3 r(offset_[at], offset_[at + 1], offset_[at + 2]);
+                const Vector3 d = Eigen::Map<const Vector3>(positions + at) - origin - r;
+                sum += d;
+                squares += d.squaredNorm();
+                size += r.squaredNorm();
+                ++count;
+            }
+            const double moved = squares - sum.squaredNorm() / std::max(count, 1);
+            if (size > 0) largest = std::max(largest, moved / size);
+            if (!std::isfinite(moved)) largest = std::numeric_limits<double>::infinity();
+        }
+        change_[block] = largest;
+    });
+    return std::sqrt(std::max(0.0, *std::max_element(change_.begin(), change_.end())));
+}
+
+template <class Real>
+void CoarseSpace<Real>::set_modes(const double* positions, int block) {
+    for (std::int32_t a = numbering_->block_aggregate_begin[block]; a < numbering_->block_aggregate_begin[block + 1];
+         ++a) {
+        const std::int32_t begin = numbering_->aggregate_begin[a], end = numbering_->aggregate_begin[a + 1];
+        Vector3 centre = Vector3::Zero();
+        int count = 0;
+        for (std::int32_t node = begin; node < end; ++node) {
+            if (numbering_->user_of_internal[node] < 0) continue;
+            centre += Eigen::Map<const Vector3>(positions + 4 * static_cast<std::int64_t>(node));
+            ++count;
+        }
+        centre /= std::max(count, 1);
+        Matrix3 inertia = Matrix3::Zero();
+        for (std::int32_t node = begin; node < end; ++node) {
+            if (numbering_->user_of_internal[node] < 0) continue;
+            const std::int64_t at = 4 * static_cast<std::int64_t>(node);
+            const Vector3 r = Eigen::Map<const Vector3>(positions + at) - centre;
+            for (int axis = 0; axis < 3; ++axis) offset_[at + axis] = static_cast<Real>(r[axis]);
+            inertia += r.squaredNorm() * Matrix3::Identity() - r * r.transpose();
+        }
+        // Rotations about principal axes of no extent move nothing: a node alone has none, collinear nodes two.
+        Matrix6& basis = matrices_->basis[a];
+        basis.setZero();
+        basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
+        Eigen::SelfAdjointEigenSolver<Matrix3> axes;
+        axes.computeDirect(inertia);
+        const double rank_limit = 1e-8 * axes.eigenvalues().maxCoeff();
+        for (int k = 0; k < 3; ++k) {
+            const double moment = axes.eigenvalues()[k];
+            if (moment > rank_limit && moment > 0 && std::isfinite(moment)) {
+                basis.block<3, 1>(3, 3 + k) = axes.eigenvectors().col(k) / std::sqrt(moment);
+            }
+        }
+    }
+}
+
+template <class Real>
+void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
+    CoarseMatrices& m = *matrices_;
+    const kernels::RowPattern& pattern = edges_->pattern();
+    const int width = pattern.width;
+    const Real* values = edges_->values();
+    const auto offset = [&](std::int32_t node) {
+        const std::int64_t at = 4 * static_cast<std::int64_t>(node);
+        return Vector3(offset_[at], offset_[at + 1], offset_[at + 2]);
+    };
+    const auto matrix = [&](std::int64_t first) {
+        Matrix3 k;
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) k(i, j) = static_cast<double>(values[first + (3 * i + j) * width]);
+        }
+        return k;
+    };
+    // Masses: sum m T^T T with T = [1, -[r]x].
+    for (std::int32_t a = numbering_->block_aggregate_begin[block]; a < numbering_->block_aggregate_begin[block + 1];
+         ++a) {
+        Matrix6& diagonal = m.diagonal[a];
+        diagonal.setZero();
+        for (std::int32_t node = numbering_->aggregate_begin[a]; node < numbering_->aggregate_begin[a + 1]; ++node) {
+            const auto mass = static_cast<double>(scaled_mass[node]);
+            if (mass == 0) continue;
+            const Vector3 r = offset(node);
+            diagonal.topLeftCorner<3, 3>().diagonal().array() += mass;
+            diagonal.topRightCorner<3, 3>() -= mass * cross_matrix(r);
+            diagonal.bottomRightCorner<3, 3>() += mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
+        }
+    }
+    // Edges within an aggregate: only the rotation of the difference d = omega x (r_j - r_i) counts.
+    for (std::int64_t chunk = pattern.block_chunk_begin[block]; chunk < pattern.block_chunk_begin[block + 1]; ++chunk) {
+        for (std::int64_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
+             ++entry) {
+            for (int lane = 0; lane < width; ++lane) {
+                const std::int32_t row = pattern.row[chunk * width + lane],
+                                   column = pattern.column[entry * width + lane];
+                const std::int32_t a = aggregate_of_[row];
+                if (row == column || aggregate_of_[column] != a) continue;
+                const Vector3 ri = offset(row), rj = offset(column);
+                const Matrix3 k = matrix(entry * 9 * width + lane), e = -cross_matrix(rj - ri);
+                const Matrix3 ke = k * e, kte = k.transpose() * e;
+                m.diagonal[a].topRightCorner<3, 3>() += ke - kte;
+                m.diagonal[a].bottomRightCorner<3, 3>() += cross_matrix(ri) * ke - cross_matrix(rj) * kte;
+            }
+        }
+    }
+    for (AggregatePair& pair : m.pairs[block]) {
+        pair.coupling.setZero();
+        pair.second_diagonal.setZero();
+    }
+    for (const CrossingEdge& edge : m.crossing[block]) {
+        const Matrix3 k = matrix(edge.value), ci = cross_matrix(offset(edge.row));
+        const Matrix3 kci = k * ci;
+        Matrix6& first = m.diagonal[aggregate_of_[edge.row]];
+        first.topLeftCorner<3, 3>() -= k;
+        first.topRightCorner<3, 3>() += kci;
+        first.bottomRightCorner<3, 3>() += ci * kci;
+        if (edge.pair < 0) continue;
+        AggregatePair& pair = m.pairs[block][static_cast<std::size_t>(edge.pair)];
+        const Matrix3 cj = cross_matrix(offset(edge.column));
+        const Matrix3 kcj = k * cj, ktcj = k.transpose() * cj;
+        pair.coupling.topLeftCorner<3, 3>() += k;
+        pair.coupling.topRightCorner<3, 3>() -= kcj;
+        pair.coupling.bottomLeftCorner<3, 3>() += ci * k;
+        pair.coupling.bottomRightCorner<3, 3>() -= ci * kcj;
+        pair.second_diagonal.topLeftCorner<3, 3>() -= k.transpose();
+        pair.second_diagonal.topRightCorner<3, 3>() += ktcj;
+        pair.second_diagonal.bottomRightCorner<3, 3>() += cj * ktcj;
+    }
+}
+
+template <class Real>
+bool CoarseSpace<Real>::refresh(Scheduler& scheduler, const double* positions, const Real* scaled_mass) {
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) { set_modes(positions, block); });
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) { accumulate(scaled_mass, block); });
+    CoarseMatrices& m = *matrices_;
+    for (const auto& pairs : m.pairs) {
+        for (const AggregatePair& pair : pairs) m.diagonal[pair.second] += pair.second_diagonal;
+    }
+    for (Matrix6& diagonal : m.diagonal) {
+        diagonal.bottomLeftCorner<3, 3>() = diagonal.topRightCorner<3, 3>().transpose();
+        diagonal = (0.5 * (diagonal + diagonal.transpose())).eval();
+    }
+    is_fresh_ = true;
+    return factorise();
+}
+
+template <class Real>
+bool CoarseSpace<Real>::factorise() {
+    CoarseMatrices& m = *matrices_;
+    const auto aggregates = static_cast<int>(m.diagonal.size());
+    // In orthonormal modes; a mode that is left out gets a one on the diagonal and no force.
+    const auto transformed = [&](int a, int b, const Matrix6& raw) {
+        Matrix6 block = m.basis[a].transpose() * raw * m.basis[b];
+        if (a == b) {
+            for (int k = 0; k < modes; ++k) {
+                if (m.basis[a].col(k).isZero(0)) block(k, k) = 1;
+            }
+        }
+        return block;
+    };
+    for (int a = 0; a < aggregates; ++a) {
+        const Matrix6 block = transformed(a, a, m.diagonal[a]);
+        for (int k = 0; k < modes; ++k) m.scale[modes * a + k] = block(k, k) > 0 ? 1 / std::sqrt(block(k, k)) : 0;
+    }
+    const auto scaled = [&](int a, int b, const Matrix6& raw) {
+        return Matrix6(m.scale.segment<modes>(modes * a).asDiagonal() * transformed(a, b, raw) *
+                       m.scale.segment<modes>(modes * b).asDiagonal());
+    };
+    if (m.is_dense) {
+        m.dense.setZero();
+        for (int a = 0; a < aggregates; ++a) {
+            m.dense.block<modes, modes>(modes * a, modes * a) += scaled(a, a, m.diagonal[a]);
+        }
+        for (const auto& pairs : m.pairs) {
+            for (const AggregatePair& pair : pairs) {
+                const Matrix6 block = scaled(pair.first, pair.second, pair.coupling);
+                m.dense.block<modes, modes>(modes * pair.first, modes * pair.second) += block;
+                m.dense.block<modes, modes>(modes * pair.second, modes * pair.first) += block.transpose();
+            }
+        }
+        const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> llt(m.dense);
+        m.is_usable = llt.info() == Eigen::Success;
+        if (!m.is_usable) return false;
+        m.inverse.setIdentity();
+        llt.solveInPlace(m.inverse);
+        return true;
+    }
+    for (int column = 0; column < m.sparse.outerSize(); ++column) {
+        for (Eigen::SparseMatrix<double>::InnerIterator it(m.sparse, column); it; ++it) it.valueRef() = 0;
+    }
+    const auto add = [&](int a, int b, const Matrix6& block) {
+        // Columns hold their entries in order of rows: a block's rows lie behind each other.
+        const int row = modes * m.place[a], column = modes * m.place[b];
+        for (int j = 0; j < modes; ++j) {
+            const int* begin = m.sparse.innerIndexPtr() + m.sparse.outerIndexPtr()[column + j];
+            const int* end = m.sparse.innerIndexPtr() + m.sparse.outerIndexPtr()[column + j + 1];
+            double* value = m.sparse.valuePtr() + (std::lower_bound(begin, end, row) - m.sparse.innerIndexPtr());
+            const int rows = row == column ? j + 1 : modes;
+            for (int i = 0; i < rows; ++i) value[i] += block(i, j);
+        }
+    };
+    for (int a = 0; a < aggregates; ++a) add(a, a, scaled(a, a, m.diagonal[a]));
+    for (const auto& pairs : m.pairs) {
+        for (const AggregatePair& pair : pairs) {
+            const Matrix6 block = scaled(pair.first, pair.second, pair.coupling);
+            if (m.place[pair.first] < m.place[pair.second]) {
+                add(pair.first, pair.second, block);
+            } else {
+                add(pair.second, pair.first, block.transpose());
+            }
+        }
+    }
+    m.factor.factorize(m.sparse);
+    m.is_usable = m.factor.info() == Eigen::Success;
+    return m.is_usable;
+}
+
+template <class Real>
+void CoarseSpace<Real>::solve() {
+    CoarseMatrices& m = *matrices_;
+    if (!m.is_usable) {
+        std::fill(correction_.begin(), correction_.end(), Real(0));
+        return;
+    }
+    const auto aggregates = static_cast<int>(m.diagonal.size());
+    const auto place = [&](int a) { return modes * (m.is_dense ? a : m.place[a]); };
+    for (int a = 0; a < aggregates; ++a) {
+        const Eigen::Map<const Eigen::Matrix<double, modes, 1>> force(restricted_.data() + modes * a);
+        m.right_hand_side.segment<modes>(place(a)) =
+            m.scale.segment<modes>(modes * a).cwiseProduct(m.basis[a].transpose() * force);
+    }
+    if (m.is_dense) {
+        m.solution.noalias() = m.inverse * m.right_hand_side;
+    } else {
+        m.solution = m.right_hand_side;
+        m.factor.matrixL().solveInPlace(m.solution);
+        m.factor.matrixU().solveInPlace(m.solution);
+    }
+    for (int a = 0; a < aggregates; ++a) {
+        const Eigen::Matrix<double, modes, 1> motion =
+            m.basis[a] * m.scale.segment<modes>(modes * a).cwiseProduct(m.solution.segment<modes>(place(a)));
+        for (int k = 0; k < modes; ++k) correction_[modes * a + k] = static_cast<Real>(motion[k]);
+    }
+}
+
+template <class Real>
+kernels::CoarseArguments<Real> CoarseSpace<Real>::arguments() noexcept {
+    return {.block_aggregate_begin = numbering_->block_aggregate_begin.data(),
+            .aggregate_begin = numbering_->aggregate_begin.data(),
+            .offset = offset_.data(),
+            .restricted = restricted_.data(),
+            .correction = correction_.data()};
+}
+
+template <class Real>
+int CoarseSpace<Real>::unknowns() const noexcept {
+    return static_cast<int>(restricted_.size());
+}
+
+template <class Real>
+std::size_t CoarseSpace<Real>::bytes() const noexcept {
+    using kernels::heap_bytes;
+    const CoarseMatrices& m = *matrices_;
+    std::size_t bytes = heap_bytes(aggregate_of_) + heap_bytes(offset_) + heap_bytes(restricted_) +
+                        heap_bytes(correction_) + heap_bytes(m.diagonal) + heap_bytes(m.basis);
+    for (const auto& crossing : m.crossing) bytes += heap_bytes(crossing);
+    for (const auto& pairs : m.pairs) bytes += heap_bytes(pairs);
+    bytes += static_cast<std::size_t>(m.dense.size() + m.inverse.size()) * sizeof(double);
+    if (!m.is_dense) {
+        bytes += static_cast<std::size_t>(m.sparse.nonZeros() + m.factor.matrixL().nestedExpression().nonZeros()) *
+                 (sizeof(double) + sizeof(int));
+    }
+    return bytes;
+}
+
+template <class Real>
+void CoarseSpace<Real>::save(std::vector<double>& numbers) const {
+    const CoarseMatrices& m = *matrices_;
+    numbers.push_back(is_fresh_ ? 1 : 0);
+    numbers.insert(numbers.end(), offset_.begin(), offset_.end());
+    const auto append = [&](const Matrix6& matrix) {
+        numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+    };
+    for (const Matrix6& matrix : m.diagonal) append(matrix);
+    for (const Matrix6& matrix : m.basis) append(matrix);
+    for (const auto& pairs : m.pairs) {
+        for (const AggregatePair& pair : pairs) append(pair.coupling);
+    }
+}
+
+template <class Real>
+void CoarseSpace<Real>::restore(std::span<const double>& numbers) {
+    CoarseMatrices& m = *matrices_;
+    std::size_t next = 0;
+    is_fresh_ = numbers[next++] != 0;
+    for (Real& number : offset_) number = static_cast<Real>(numbers[next++]);
+    const auto read = [&](Matrix6& matrix) {
+        for (int i = 0; i < matrix.size(); ++i) matrix.data()[i] = numbers[next++];
+    };
+    for (Matrix6& matrix : m.diagonal) read(matrix);
+    for (Matrix6& matrix : m.basis) read(matrix);
+    for (auto& pairs : m.pairs) {
+        for (AggregatePair& pair : pairs) read(pair.coupling);
+    }
+    numbers = numbers.subspan(next);
+    if (is_fresh_) factorise();
+}
+
+template class CoarseSpace<float>;
+template class CoarseSpace<double>;
+
+}  // namespace lancet::runtime

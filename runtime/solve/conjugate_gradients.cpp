@@ -1,0 +1,183 @@
+#include "lancet/runtime/solve/conjugate_gradients.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "lancet/runtime/schedule/ordered_sum.hpp"
+
+namespace lancet::runtime {
+
+template <class Real, class Accumulate>
+ConjugateGradients<Real, Accumulate>::ConjugateGradients(const kernels::KernelSet<Real>& kernels,
+                                                         const kernels::NodeNumbering& numbering)
+    : numbering_(&numbering),
+      z_(static_cast<std::size_t>(numbering.node_count) * 4),
+      p_(z_.size()),
+      s_(z_.size()),
+      r_(z_.size()),
+      r_dot_z_(static_cast<std::size_t>(numbering.blocks())),
+      r_dot_r_(r_dot_z_.size()) {
+    if constexpr (std::is_same_v<Real, Accumulate>) {
+        kernels_ = &kernels.vector;
+    } else {
+        kernels_ = &kernels.vector_mixed;
+    }
+}
+
+template <class Real, class Accumulate>
+typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::sum_products()
+    const noexcept {
+    return {sum_in_order(std::span<const double>(r_dot_z_)), sum_in_order(std::span<const double>(r_dot_r_))};
+}
+
+template <class Real, class Accumulate>
+typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::precondition(
+    Scheduler& scheduler, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter) {
+    // The products r . z hold before z is filtered, for r is: r . S z = S r . z = r . z.
+    if (preconditioner.coarse() == nullptr) {
+        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+            kernels_->precondition(arguments_, block);
+            filter.apply(z_.data(), block);
+        });
+        return sum_products();
+    }
+    const auto coarse = preconditioner.coarse()->arguments();
+    scheduler.for_each_block(numbering_->blocks(),
+                             [&](int block) { kernels_->restrict_residual(coarse, arguments_, block); });
+    preconditioner.coarse()->solve();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        kernels_->precondition_with_coarse(coarse, arguments_, block);
+        filter.apply(z_.data(), block);
+    });
+    return sum_products();
+}
+
+template <class Real, class Accumulate>
+typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::advance(
+    Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter,
+    double alpha, double beta) {
+    arguments_.alpha = static_cast<Accumulate>(alpha);
+    arguments_.beta = static_cast<Accumulate>(beta);
+    const auto complete_product = [&](int block) {
+        matrix.merge(block);
+        filter.apply(matrix.buffer(), block);
+    };
+    if (preconditioner.coarse() == nullptr) {
+        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+            complete_product(block);
+            kernels_->update_and_precondition(arguments_, block);
+            filter.apply(z_.data(), block);
+        });
+        return sum_products();
+    }
+    const auto coarse = preconditioner.coarse()->arguments();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        complete_product(block);
+        kernels_->update(arguments_, block);
+        kernels_->restrict_residual(coarse, arguments_, block);
+    });
+    preconditioner.coarse()->solve();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        kernels_->precondition_with_coarse(coarse, arguments_, block);
+        filter.apply(z_.data(), block);
+    });
+    return sum_products();
+}
+
+template <class Real, class Accumulate>
+ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
+    Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter,
+    std::span<const Accumulate> b, std::span<Accumulate> x, const ConjugateGradientSettings& settings,
+    std::span<double> history) {
+    arguments_ = {.block_begin = numbering_->block_begin.data(),
+                  .w = matrix.buffer(),
+                  .z = z_.data(),
+                  .p = p_.data(),
+                  .s = s_.data(),
+                  .x = x.data(),
+                  .r = r_.data(),
+                  .inverse_diagonal = preconditioner.inverse_diagonal(),
+                  .alpha = 0,
+                  .beta = 0,
+                  .r_dot_z = r_dot_z_.data(),
+                  .r_dot_r = r_dot_r_.data()};
+    const std::size_t free_numbers = static_cast<std::size_t>(numbering_->free_count) * 4;
+
+    // The norm of the right-hand side in which the residual is measured.
+    const auto for_block_numbers = [&](int block, const auto& body) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) body(i);
+    };
+    const bool starts_from_zero = std::all_of(x.begin(), x.end(), [](Accumulate value) { return value == 0; });
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for_block_numbers(block, [&](std::size_t i) {
+            r_[i] = b[i];
+            p_[i] = 0;
+            s_[i] = 0;
+        });
+        filter.apply(r_.data(), block);
+    });
+    Products products = precondition(scheduler, preconditioner, filter);
+    const double reference = products.r_dot_z;
+    ConjugateGradientResult result;
+    if (!std::isfinite(reference)) {
+        result.broke_down = true;
+        result.residual = reference;
+        return result;
+    }
+
+    if (!starts_from_zero) {
+        for (std::size_t i = 0; i < x.size(); ++i) z_[i] = static_cast<Real>(x[i]);
+        matrix.product(scheduler, z_.data());
+        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+            matrix.merge(block);
+            for_block_numbers(block,
+                              [&](std::size_t i) { r_[i] = b[i] - static_cast<Accumulate>(matrix.buffer()[i]); });
+            filter.apply(r_.data(), block);
+        });
+        // From here on z is a correction: it does not move what is prescribed.
+        std::fill(z_.begin() + static_cast<std::ptrdiff_t>(free_numbers), z_.end(), Real(0));
+        products = precondition(scheduler, preconditioner, filter);
+    }
+
+    const auto relative = [&](double r_dot_z) {
+        return reference > 0 ? std::sqrt(std::max(r_dot_z, 0.0) / reference) : (r_dot_z > 0 ? HUGE_VAL : 0.0);
+    };
+    result.residual = relative(products.r_dot_z);
+    double previous_r_dot_z = 0, previous_alpha = 0;
+    while (result.iterations < settings.iterations) {
+        if (products.r_dot_z == 0 || result.residual < settings.tolerance) break;
+        const double z_dot_az = matrix.product(scheduler, z_.data());
+        const double beta = result.iterations == 0 ? 0 : products.r_dot_z / previous_r_dot_z;
+        const double curvature =
+            result.iterations == 0 ? z_dot_az : z_dot_az - beta * products.r_dot_z / previous_alpha;
+        if (!(curvature > 0) || !(products.r_dot_z > 0) || !std::isfinite(curvature)) {
+            result.broke_down = true;
+            break;
+        }
+        const double alpha = products.r_dot_z / curvature;
+        previous_r_dot_z = products.r_dot_z;
+        previous_alpha = alpha;
+        products = advance(scheduler, matrix, preconditioner, filter, alpha, beta);
+        result.residual = relative(products.r_dot_z);
+        if (static_cast<std::size_t>(result.iterations) < history.size()) {
+            history[static_cast<std::size_t>(result.iterations)] = result.residual;
+        }
+        ++result.iterations;
+    }
+    return result;
+}
+
+template <class Real, class Accumulate>
+std::size_t ConjugateGradients<Real, Accumulate>::bytes() const noexcept {
+    using kernels::heap_bytes;
+    return heap_bytes(z_) + heap_bytes(p_) + heap_bytes(s_) + heap_bytes(r_) + heap_bytes(r_dot_z_) +
+           heap_bytes(r_dot_r_);
+}
+
+template class ConjugateGradients<float, float>;
+template class ConjugateGradients<float, double>;
+template class ConjugateGradients<double, double>;
+
+}  // namespace lancet::runtime

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lancet/runtime/solve/constraints.hpp"
+#include "lancet/runtime/solve/operator.hpp"
+#include "lancet/runtime/solve/preconditioner.hpp"
+
+namespace lancet::runtime {
+
+/// When conjugate gradients stop.
+struct ConjugateGradientSettings {
+    int iterations = 10;   ///< at most
+    double tolerance = 0;  ///< relative, in the norm of the preconditioner: sqrt(r . B r / b . B b); 0: all iterations
+};
+
+/// How a solve ended.
+struct ConjugateGradientResult {
+    int iterations = 0;
+    double residual = 0;  ///< sqrt(r . B r / b . B b), with b the right-hand side filtered
+    bool broke_down =
+        false;  ///< the matrix showed itself indefinite or not finite; the iterate before that is returned
+};
+
+/// Preconditioned conjugate gradients in the form of Chronopoulos and Gear (1989): the products that an iteration needs
+/// are formed while the operator and the vector pass run, so that the threads meet twice an iteration (three times with
+/// a coarse space) where the textbook's form meets four times.
+///
+/// `Real` is the scalar of the operator, `Accumulate` that of solution and residual.
+template <class Real, class Accumulate>
+class ConjugateGradients {
+  public:
+    explicit ConjugateGradients(const kernels::KernelSet<Real>& kernels, const kernels::NodeNumbering& numbering);
+
+    /// Solves S A S x = S b, where S is the filter, starting from x, whose values at fixed and held nodes are
+    /// prescribed and kept. b and x are xyz_ nodal vectors. `history`, if not empty, receives the residual after each
+    /// iteration.
+    ConjugateGradientResult solve(Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner,
+                                  const ConstraintFilter& filter, std::span<const Accumulate> b,
+                                  std::span<Accumulate> x, const ConjugateGradientSettings& settings,
+                                  std::span<double> history = {});
+
+    std::size_t bytes() const noexcept;
+
+  private:
+    struct Products {
+        double r_dot_z = 0;
+        double r_dot_r = 0;
+    };
+
+    Products precondition(Scheduler& scheduler, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter);
+    Products advance(Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner,
+                     const ConstraintFilter& filter, double alpha, double beta);
+    Products sum_products() const noexcept;
+
+    const kernels::VectorKernels<Real, Accumulate>* kernels_;
+    const kernels::NodeNumbering* numbering_;
+    kernels::AlignedVector<Real> z_;
+    kernels::AlignedVector<Accumulate> p_, s_, r_;
+    std::vector<double> r_dot_z_, r_dot_r_;
+    kernels::ConjugateGradientArguments<Real, Accumulate> arguments_{};
+};
+
+}  // namespace lancet::runtime

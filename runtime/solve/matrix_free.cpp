@@ -1,0 +1,56 @@
+#include "lancet/runtime/solve/matrix_free.hpp"
+
+namespace lancet::runtime {
+
+template <class Real>
+MatrixFree<Real>::MatrixFree(ElasticElements<Real>& elements, const OperatorDefinition& definition)
+    : Operator<Real>(elements, definition.nodal_mass),
+      mass_(definition.mass),
+      element_mass_(mass_ == MassKind::consistent ? elements.batches().mass.size() : 0) {
+    this->set_plan(elements.batches().scatter);
+}
+
+template <class Real>
+void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors) {
+    this->set_factors(factors);
+    if (mass_ == MassKind::lumped || element_mass_factor_ == factors.mass) return;
+    element_mass_factor_ = factors.mass;
+    for (std::size_t lane = 0; lane < element_mass_.size(); ++lane) {
+        element_mass_[lane] =
+            static_cast<Real>(factors.mass * static_cast<double>(this->elements().batches().mass[lane]) / 20);
+    }
+}
+
+template <class Real>
+void MatrixFree<Real>::add_product(const kernels::ProductArguments<Real>& product, int block) const {
+    const kernels::ElementBatches<Real>& batches = this->elements().batches();
+    const kernels::MatrixFreeArguments<Real> matrix{
+        .block_batch_begin = batches.block_batch_begin.data(),
+        .nodes = batches.nodes.data(),
+        .targets = batches.targets.data(),
+        .rest = batches.rest.data(),
+        .rotated = this->elements().rotated(),
+        .element_mass = element_mass_.empty() ? nullptr : element_mass_.data(),
+        .stiffness_factor = static_cast<Real>(this->factors().stiffness)};
+    this->kernels().matrix.matrix_free(product, matrix, block);
+}
+
+template <class Real>
+std::size_t MatrixFree<Real>::bytes() const noexcept {
+    return Operator<Real>::bytes() + kernels::heap_bytes(element_mass_);
+}
+
+template <class Real>
+typename Operator<Real>::Work MatrixFree<Real>::work() const noexcept {
+    // Per element: 9 differences, 45 for G (9 dot products of 3), 11 for the stress and 6 for its factor, 45 for three
+    // forces, 6 for the fourth, 12 for the scatter, 11 for the quadratic form. Gradients, lambda / mu, nodes, targets.
+    const auto elements = static_cast<double>(this->elements().batches().slots());
+    const auto nodes = static_cast<double>(this->numbering().free_count);
+    return {.flops = elements * 145 + nodes * 9,
+            .bytes = elements * (10 * sizeof(Real) + 32.0) + nodes * (4.0 * 3 + 1) * sizeof(Real)};
+}
+
+template class MatrixFree<float>;
+template class MatrixFree<double>;
+
+}  // namespace lancet::runtime
