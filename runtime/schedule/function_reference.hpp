@@ -20,7 +20,7 @@ class FunctionReference<Result(Arguments...)> {
     template <class Callable>
     requires(!std::same_as<std::remove_cvref_t<Callable>, FunctionReference> &&
              std::is_invocable_r_v<Result, Callable&, Arguments...>) FunctionReference(Callable&& callable)
-    noexcept  // NOLINT(google-explicit-constructor): reads like a std::function
+    noexcept  // NOLINT(bugprone-forwarding-reference-overload): excluded above
         : object_(address_of(callable)), call_([](void* object, Arguments... arguments) -> Result {
               using Pointer = std::add_pointer_t<std::remove_reference_t<Callable>>;
               return std::invoke(*reinterpret_cast<Pointer>(object), std::forward<Arguments>(arguments)...);

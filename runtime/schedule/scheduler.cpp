@@ -13,25 +13,22 @@ namespace {
 constexpr std::array all_kinds{SchedulerKind::serial, SchedulerKind::openmp, SchedulerKind::tbb,
                                SchedulerKind::threads};
 
-constexpr bool compiled_in(SchedulerKind kind) {
-    switch (kind) {
-        case SchedulerKind::serial:
-        case SchedulerKind::threads:
-            return true;
-        case SchedulerKind::openmp:
 #if defined(LANCET_HAS_OPENMP)
-            return true;
+constexpr bool has_openmp = true;
 #else
-            return false;
+constexpr bool has_openmp = false;
 #endif
-        case SchedulerKind::tbb:
+
 #if defined(LANCET_HAS_TBB)
-            return true;
+constexpr bool has_tbb = true;
 #else
-            return false;
+constexpr bool has_tbb = false;
 #endif
-    }
-    return false;
+
+constexpr bool compiled_in(SchedulerKind kind) {
+    if (kind == SchedulerKind::openmp) return has_openmp;
+    if (kind == SchedulerKind::tbb) return has_tbb;
+    return true;
 }
 
 template <class Kinds>

@@ -108,25 +108,34 @@ TEST_P(StepGraphRun, LoopsInsideTasksRunEveryBlockOnce) {
     }
 }
 
-// A thread that waits for the blocks of its own loop must not start another task of the graph meanwhile.
+// A thread that waits for the blocks of its own loop must not start another task of the graph meanwhile. Many short
+// tasks are ready while the loops run, and a helper that takes part of a loop lets the loop's owner wait.
 TEST_P(StepGraphRun, WaitingThreadTakesUpNoOtherTask) {
     const auto scheduler = GetParam().make();
-    static thread_local int tasks_on_this_thread = 0;
+    static thread_local bool in_a_task = false;
     std::atomic<int> mixed{0};
+    const auto enter = [&] {
+        if (in_a_task) ++mixed;
+        in_a_task = true;
+    };
     StepGraph graph;
     auto root = graph.task("root", [] {});
-    for (int index = 0; index < 16; ++index) {
-        root.precede(graph.task("task " + std::to_string(index), [&] {
-            if (++tasks_on_this_thread > 1) ++mixed;
-            for (int repetition = 0; repetition < 20; ++repetition) {
-                scheduler->for_each_block(8, [&](int block) {
-                    if (block == 7) std::this_thread::sleep_for(std::chrono::microseconds(50));
-                });
+    const auto pause = [](int microseconds) { std::this_thread::sleep_for(std::chrono::microseconds(microseconds)); };
+    for (int index = 0; index < 200; ++index) {
+        const bool loops = index % 50 == 25;
+        root.precede(graph.task("task " + std::to_string(index), [&, loops] {
+            enter();
+            if (loops) {
+                for (int repetition = 0; repetition < 20; ++repetition) {
+                    scheduler->for_each_block(8, [&](int block) { pause(block >= 4 ? 100 : 10); });
+                }
+            } else {
+                pause(20);
             }
-            --tasks_on_this_thread;
+            in_a_task = false;
         }));
     }
-    for (int repetition = 0; repetition < 3; ++repetition) graph.run(*scheduler);
+    for (int repetition = 0; repetition < 2; ++repetition) graph.run(*scheduler);
     EXPECT_EQ(mixed, 0);
 }
 
