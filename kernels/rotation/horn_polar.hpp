@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lancet/kernels/rotation/quaternion_polar.hpp"
+#include "lancet/kernels/rotation/svd.hpp"
 
 namespace lancet::kernels {
 
@@ -10,8 +10,8 @@ namespace lancet::kernels {
 template <class P>
 LANCET_INLINE P horn_eigenvalue(const Matrix3<P>& f) {
     using Real = typename P::Real;
+    using Constants = RotationConstants<P>;
     const P zero(Real(0));
-    const P tiny(RotationConstants<P>::tiny);
     const auto& a = f.entry;
     P square = a[0][0] * a[0][0];
     P cofactor_square = zero;
@@ -35,14 +35,16 @@ LANCET_INLINE P horn_eigenvalue(const Matrix3<P>& f) {
     // The square of the sum of the singular values is |F|^2 + 2 (s1 s2 + s2 s3 + s3 s1), the last at most sqrt(3) |cof
     // F|.
     P x = sqrt(fma(P(Real(2)), sqrt(P(Real(3)) * cofactor_square), square));
-    constexpr int iterations = RotationConstants<P>::single ? 5 : 8;
+    constexpr int iterations = Constants::single ? 5 : 8;
     for (int iteration = 0; iteration < iterations; ++iteration) {
         const P xx = x * x;
         const P value = max(fma(fma(xx + c2, x, c1), x, c0), zero);
         const P slope = max(fma(fma(P(Real(4)), xx, P(Real(2)) * c2), x, c1), zero);
         const P curvature = fma(P(Real(12)), xx, P(Real(2)) * c2);
         const P root = sqrt(max(fnma(P(Real(12)) * value, curvature, P(Real(9)) * slope * slope), zero));
-        x = fnma(P(Real(4)) * value, P(Real(1)) / (slope + root + tiny), x);
+        // The floor is for multiple roots, where value and slope are rounding.
+        const P denominator = max(slope + root, P(Real(4) * Constants::cube_root_epsilon) * xx * x);
+        x = fnma(P(Real(4)) * value, P(Real(1)) / (denominator + P(Constants::tiny)), x);
     }
     return x;
 }
@@ -87,8 +89,10 @@ LANCET_INLINE Quaternion<P> dominant_adjugate_column(P m00, P m01, P m02, P m03,
 /// The rotation that maximises tr(R^T F) = q^T K q, K Horn's symmetric 4 x 4 matrix of F (Horn 1987: Closed-form
 /// solution of absolute orientation using unit quaternions; Higham and Noferini 2016: An algorithm to compute the polar
 /// decomposition of a 3 x 3 matrix): the eigenvector of the largest eigenvalue x of K, as the largest column of
-/// adj(x 1 - K), then Newton steps. Needs no start and holds for every finite F, reflections and rank one included: x
-/// is kept a little too large, so that at a multiple eigenvalue the adjugate is still well above rounding.
+/// adj(x 1 - K), then Newton steps. x is kept a little too large, so that at a multiple eigenvalue the adjugate is
+/// still well above rounding. Needs no start and holds for every finite F: lanes in which the Newton steps have not
+/// converged (F of rank one, or inverted with s2 and s3 nearly equal: two or three eigenvalues of K meet) take
+/// svd_rotation.
 template <class P>
 LANCET_INLINE Quaternion<P> polar_rotation(const Matrix3<P>& f) {
     using Real = typename P::Real;
@@ -110,12 +114,15 @@ LANCET_INLINE Quaternion<P> polar_rotation(const Matrix3<P>& f) {
     q = normalise(rotation_step(scaled, q).rotation);
     RotationStep<P> last = rotation_step(scaled, q);
     // Where the second singular value is small or F inverts, the eigenvector was not so good.
-    for (int further = 0; further < 4 && !all(last.converged); ++further) {
+    for (int further = 0; further < 2 && !all(last.converged); ++further) {
         const auto next = rotation_step(scaled, normalise(last.rotation));
         last.rotation = select(last.converged, last.rotation, next.rotation);
         last.converged = last.converged | next.converged;
     }
-    return normalise(last.rotation);
+    const Quaternion<P> rotation = normalise(last.rotation);
+    if (all(last.converged)) [[likely]]
+        return rotation;
+    return select(last.converged, rotation, distant_svd_rotation(f));
 }
 
 }  // namespace lancet::kernels

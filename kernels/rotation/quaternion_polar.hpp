@@ -79,9 +79,9 @@ LANCET_INLINE P safe_shift(const RotationDerivatives<P>& d) {
 ///
 /// The rotation vector w = H^-1 g has the length tan(angle) if what is left is a rotation about a principal axis of the
 /// stretch; therefore the step turns by arctan |w|, which is exact there and of third order elsewhere. Where H is not
-/// safely positive definite there are two ways on. Past a right angle the same step, with the angle continued to the
-/// second quadrant, still ascends unless g lies badly; it is taken up to about 117 degrees. Else (also where F is
-/// nearly of rank one, so that the rotation is not determined) a shifted Hessian makes it an ascent.
+/// safely positive definite there are two ways on. The same step, with the angle continued to the second quadrant, up
+/// to about 117 degrees, and with a floor under |det H|, still ascends unless g lies badly. Else a shifted Hessian
+/// makes it an ascent. What F does not determine (a gap s2 +- s3 below about 64 epsilon s1) hardly moves.
 ///
 /// A lane is converged when H is safely positive definite and the step so short that what it leaves is rounding; as
 /// tr(R^T F) is a quadratic form in the quaternion, every local maximum is the global one.
@@ -92,21 +92,23 @@ LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternio
     const P zero(Real(0));
     const auto d = rotation_derivatives(f, start);
     auto w = solve_shifted(d, d.trace);
-    const P least = P(Real(256) * Constants::epsilon) * (d.trace * d.trace * d.trace);
+    const P least = P(Real(64) * Constants::epsilon) * (d.trace * d.trace * d.trace);
     // All three invariants of H (its trace is 2 tr B) are positive.
     const auto safe = (d.trace > zero) & (w.adjugate_trace > zero) & (w.determinant > least);
     if (!all(safe)) [[unlikely]] {
         const auto ascent = solve_shifted(d, safe_shift(d));
         const P progress =
             fma(w.numerator[2], d.gradient[2], fma(w.numerator[1], d.gradient[1], w.numerator[0] * d.gradient[0]));
-        const auto turning = (w.determinant < -abs(least)) & (progress > zero);
+        const auto turning = progress > zero;
+        const P floor = abs(least);
         const P numerator_length = sqrt(
             fma(w.numerator[2], w.numerator[2], fma(w.numerator[1], w.numerator[1], w.numerator[0] * w.numerator[0])));
         const P obtuse = max(w.determinant, P(Real(-0.5)) * numerator_length);
+        const P determinant = select(w.determinant < -floor, obtuse, max(w.determinant, floor));
         for (int i = 0; i < 3; ++i) {
             w.numerator[i] = select(safe | turning, w.numerator[i], ascent.numerator[i]);
         }
-        w.determinant = select(safe, w.determinant, select(turning, obtuse, max(ascent.determinant, zero)));
+        w.determinant = select(safe, w.determinant, select(turning, determinant, max(ascent.determinant, zero)));
     }
     const P square =
         fma(w.numerator[2], w.numerator[2], fma(w.numerator[1], w.numerator[1], w.numerator[0] * w.numerator[0]));

@@ -4,12 +4,6 @@
 
 namespace lancet::kernels {
 
-/// svd_rotation as a function of its own: it is rarely called where it stands.
-template <class P>
-[[gnu::noinline, gnu::cold]] Quaternion<P> distant_svd_rotation(const Matrix3<P>& f) {
-    return svd_rotation(f);
-}
-
 /// The rotation that maximises tr(R^T F) to rounding, from any start, a good one making it fast: `steps` Newton steps
 /// of the analytic polar decomposition and, while a lane has not converged, up to two more; where any lane still has
 /// not (a bad start, F inverted, flat or of rank one) its batch computes the singular value decomposition, and that

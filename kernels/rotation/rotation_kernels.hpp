@@ -8,7 +8,7 @@ namespace lancet::kernels {
 enum class RotationMethod {
     quaternion,  ///< Newton steps on a unit quaternion from a warm start (Kugelstadt, Koschier, Bender 2018): fastest,
                  ///< but only as good as its start, and wrong after a jump of the rotation by more than 90 degrees
-    polar,       ///< the dominant eigenvector of Horn's 4 x 4 matrix; no start needed
+    polar,       ///< the dominant eigenvector of Horn's 4 x 4 matrix, svd where it is not single; no start needed
     svd,         ///< singular value decomposition with the inversion convention (McAdams et al. 2011): the reference
     robust       ///< quaternion with a test of convergence, and svd in the lanes that fail it: the default
 };

@@ -165,4 +165,10 @@ LANCET_INLINE Quaternion<P> svd_rotation(const Matrix3<P>& f) {
     return normalise(q);
 }
 
+/// svd_rotation as a function of its own: it is rarely called where it stands.
+template <class P>
+[[gnu::noinline, gnu::cold]] Quaternion<P> distant_svd_rotation(const Matrix3<P>& f) {
+    return svd_rotation(f);
+}
+
 }  // namespace lancet::kernels

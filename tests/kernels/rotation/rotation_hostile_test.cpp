@@ -83,8 +83,9 @@ std::vector<Matrix3d> hostile(const RotationRun& run) {
 void expect_proper(const RotationRun& run, const Eigen::Quaterniond& q, const Matrix3d& f) {
     ASSERT_TRUE(q.coeffs().allFinite()) << f;
     const Matrix3d r = q.toRotationMatrix();
-    EXPECT_LE((r.transpose() * r - Matrix3d::Identity()).norm(), 8 * run.epsilon()) << f;
-    EXPECT_NEAR(r.determinant(), 1, 8 * run.epsilon()) << f;
+    // The bounds of the matrix follow from that of the length: 4 sqrt(2) and 6 times as much, and rounding here.
+    EXPECT_LE((r.transpose() * r - Matrix3d::Identity()).norm(), 16 * run.epsilon()) << f;
+    EXPECT_NEAR(r.determinant(), 1, 16 * run.epsilon()) << f;
     EXPECT_NEAR(q.norm(), 1, 2 * run.epsilon()) << f;
 }
 
@@ -102,6 +103,7 @@ TEST_P(RotationHostile, EveryFiniteMatrixHasAProperRotation) {
     }
 }
 
+// A gap s2 +- s3 below 64 eps s1 is not resolved: by twice the gap, and rounding, the trace may miss the largest one.
 TEST_P(RotationHostile, TheRotationFitsAsWellAsAny) {
     const RotationRun& run = GetParam();
     if (run.method == RotationMethod::quaternion) GTEST_SKIP() << "method quaternion needs a near start";
@@ -112,8 +114,8 @@ TEST_P(RotationHostile, TheRotationFitsAsWellAsAny) {
         if (scale == 0) continue;
         const RotationReference reference = rotation_reference(f[i] / scale);
         const double trace = (q[i].toRotationMatrix().transpose() * (f[i] / scale)).trace();
-        EXPECT_GE(trace, reference.largest_trace - 32 * run.epsilon() * reference.size) << "matrix " << i << "\n"
-                                                                                        << f[i];
+        EXPECT_GE(trace, reference.largest_trace - 160 * run.epsilon() * reference.size) << "matrix " << i << "\n"
+                                                                                         << f[i];
     }
 }
 

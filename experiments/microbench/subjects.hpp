@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lancet/kernels/isa/instruction_set.hpp"
+
+namespace lancet::experiments {
+
+/// The instruction sets that are compiled in and that this machine executes; the others stand in the context of the
+/// results as not run.
+std::vector<kernels::InstructionSet> instruction_sets_to_measure();
+
+/// "float" or "double".
+template <class Real>
+constexpr const char* scalar_name() {
+    return sizeof(Real) == 4 ? "float" : "double";
+}
+
+// One function per subject: registers its benchmarks, named subject/what/scalar/instruction set[/setting].
+
+void register_peak();
+void register_rotation();
+
+}  // namespace lancet::experiments
