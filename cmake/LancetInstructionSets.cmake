@@ -24,3 +24,17 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12's own AVX-512 header reads variables that it leaves uninitialised on purpose.
   list(APPEND lancet_flags_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
 endif()
+
+# Kernels are one deep nest of inlined functions: with a check of each `this` for null and of each scope of a temporary
+# the compiler takes minutes and gigabytes for a file. Bounds, alignment, overflow and shifts stay checked.
+if(LANCET_SANITIZE)
+  foreach(isa IN LISTS LANCET_ISA ITEMS scalar)
+    list(APPEND lancet_flags_${isa} -O2 -g1)
+    if(LANCET_SANITIZE MATCHES "undefined")
+      list(APPEND lancet_flags_${isa} -fno-sanitize=null,object-size,vptr)
+    endif()
+    if(LANCET_SANITIZE MATCHES "address")
+      list(APPEND lancet_flags_${isa} -fno-sanitize-address-use-after-scope)
+    endif()
+  endforeach()
+endif()

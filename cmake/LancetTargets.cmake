@@ -8,10 +8,6 @@ function(lancet_settings target)
   # every build of one instruction set computes the same bits.
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                                            -Wno-sign-conversion)
-  # The cross compiler, GCC 12, warns about overlapping copies inside of its own std::string (GCC bug 105651).
-  if(CMAKE_CROSSCOMPILING)
-    target_compile_options(${target} PRIVATE -Wno-restrict)
-  endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC 12 sees an overlap in std::string's own concatenation (GCC bug 105651).
     target_compile_options(${target} PRIVATE -Wno-restrict)
