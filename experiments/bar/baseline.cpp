@@ -1,7 +1,6 @@
 #include "lancet/experiments/bar/baseline.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 
@@ -12,6 +11,7 @@
 #include "lancet/experiments/common/options.hpp"
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/node_graph.hpp"
+#include "lancet/runtime/observe/clock.hpp"
 
 namespace lancet::experiments::bar {
 namespace {
@@ -54,15 +54,15 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options, const Baselin
 WorkerReport simulate(const Problem& problem, const BaselineOptions& options, const BaselineProgram& program,
                       Snapshots& snapshots) {
     WorkerReport report;
-    const double begin = wall_clock();
+    const double begin = runtime::steady_seconds();
     const auto make = options.scalar == "float" ? program.make_float : program.make_double;
     const std::unique_ptr<BaselineSolver> solver = make(problem, options);
-    report.seconds_setup = wall_clock() - begin;
+    report.seconds_setup = runtime::steady_seconds() - begin;
 
     for (int step = 0; step < problem.steps; ++step) {
-        const double step_begin = wall_clock();
+        const double step_begin = runtime::steady_seconds();
         const StepCost cost = solver->step(step % options.rotation_interval == 0);
-        report.seconds_total += wall_clock() - step_begin;
+        report.seconds_total += runtime::steady_seconds() - step_begin;
         report.seconds_forces += cost.seconds_forces;
         report.seconds_solve += cost.seconds_solve;
         report.cg_iterations_total += cost.cg_iterations;
@@ -165,10 +165,6 @@ MatrixGraph matrix_graph(const mesh::TetMesh& mesh) {
     }
     graph.begins.push_back(graph.columns.size());
     return graph;
-}
-
-double wall_clock() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace lancet::experiments::bar

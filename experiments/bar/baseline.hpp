@@ -85,9 +85,6 @@ struct MatrixGraph {
 };
 [[nodiscard]] MatrixGraph matrix_graph(const mesh::TetMesh& mesh);
 
-/// Wall-clock seconds since an arbitrary moment.
-[[nodiscard]] double wall_clock();
-
 /// Bytes of a vector's storage.
 template <class Vector>
 [[nodiscard]] std::int64_t storage(const Vector& vector) {

@@ -16,6 +16,7 @@
 #include "lancet/experiments/bar/corotational_element.hpp"
 #include "lancet/experiments/bar/energy.hpp"
 #include "lancet/kernels/error.hpp"
+#include "lancet/runtime/observe/clock.hpp"
 
 namespace lancet::experiments::bar {
 
@@ -271,15 +272,15 @@ class EigenSolver final : public BaselineSolver {
     /// D v_n - dt K v_n) with v_n as the first guess.
     StepCost step_at_state(bool update) {
         StepCost cost;
-        const double begin = wall_clock();
+        const double begin = runtime::steady_seconds();
         if (update) assemble(positions_);
         elastic_forces(positions_);
-        cost.seconds_forces = wall_clock() - begin;
+        cost.seconds_forces = runtime::steady_seconds() - begin;
 
         right_hand_side_ = masses_.cwiseProduct(velocities_) + time_step_ * (forces_ + load_);
-        const double solve_begin = wall_clock();
+        const double solve_begin = runtime::steady_seconds();
         solve(&velocities_, update, cost);
-        cost.seconds_solve = wall_clock() - solve_begin;
+        cost.seconds_solve = runtime::steady_seconds() - solve_begin;
         velocities_.swap(change_);
         advance(positions_, velocities_);
         return cost;
@@ -297,10 +298,10 @@ class EigenSolver final : public BaselineSolver {
         for (int solves = 0;; ++solves) {
             predicted_ = positions_;
             advance(predicted_, velocities_);
-            const double begin = wall_clock();
+            const double begin = runtime::steady_seconds();
             if (update) assemble(predicted_);
             elastic_forces(predicted_);
-            cost.seconds_forces += wall_clock() - begin;
+            cost.seconds_forces += runtime::steady_seconds() - begin;
 
             right_hand_side_ = time_step_ * (forces_ + load_ - damping_mass_ * masses_.cwiseProduct(velocities_));
             if (stiffness_share > 0) {
@@ -311,9 +312,9 @@ class EigenSolver final : public BaselineSolver {
                 right_hand_side_ -= masses_.cwiseProduct(velocities_ - before);
                 if (right_hand_side_.norm() <= Scalar(options_.newton_tolerance) * time_step_ * load_.norm()) break;
             }
-            const double solve_begin = wall_clock();
+            const double solve_begin = runtime::steady_seconds();
             solve(nullptr, update, cost);
-            cost.seconds_solve += wall_clock() - solve_begin;
+            cost.seconds_solve += runtime::steady_seconds() - solve_begin;
             velocities_ += change_;
             if (!newton) break;
             if (solves == most_solves || !velocities_.allFinite()) {

@@ -10,6 +10,7 @@
 #include "lancet/experiments/bar/baseline.hpp"
 #include "lancet/experiments/bar/corotational_element.hpp"
 #include "lancet/experiments/bar/energy.hpp"
+#include "lancet/runtime/observe/clock.hpp"
 
 namespace lancet::experiments::bar {
 
@@ -66,15 +67,15 @@ class ThesisSolver final : public BaselineSolver {
             }
         }
         const std::vector<Vector>& where = prediction ? predicted_ : positions_;
-        const double begin = wall_clock();
+        const double begin = runtime::steady_seconds();
         if (update) assemble(where);
         elastic_forces(where, forces_);
-        cost.seconds_forces = wall_clock() - begin;
+        cost.seconds_forces = runtime::steady_seconds() - begin;
 
         right_hand_side(prediction);
-        const double solve_begin = wall_clock();
+        const double solve_begin = runtime::steady_seconds();
         solve(cost);
-        cost.seconds_solve = wall_clock() - solve_begin;
+        cost.seconds_solve = runtime::steady_seconds() - solve_begin;
 
         for (std::size_t node = 0; node < nodes; ++node) {
             velocities_[node] = velocities_[node] + change_[node];

@@ -1,0 +1,255 @@
+// The Bar of Jerabkova 2007, or any other mesh, solved by every method in a process of its own: time beside error.
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "lancet/experiments/bar/errors.hpp"
+#include "lancet/experiments/bar/pictures.hpp"
+#include "lancet/experiments/bar/problem.hpp"
+#include "lancet/experiments/bar/reference.hpp"
+#include "lancet/experiments/bar/rows.hpp"
+#include "lancet/experiments/bar/settings.hpp"
+#include "lancet/experiments/bar/workers.hpp"
+#include "lancet/experiments/common/file.hpp"
+#include "lancet/experiments/common/main.hpp"
+#include "lancet/experiments/common/options.hpp"
+#include "lancet/experiments/common/process.hpp"
+#include "lancet/experiments/common/progress.hpp"
+#include "lancet/kernels/error.hpp"
+#include "lancet/runtime/observe/machine_stamp.hpp"
+#include "lancet/runtime/observe/machine_stamp_json.hpp"
+
+namespace {
+
+using namespace lancet;
+using namespace lancet::experiments;
+using namespace lancet::experiments::bar;
+
+struct Options {
+    ProblemOptions problem;
+    SharedOptions shared;
+    bool original = false;
+    bool accurate = false;
+    std::vector<std::string> operators;
+    std::vector<std::string> methods;
+    int repetitions = 3;
+    bool no_errors = false;
+    std::filesystem::path pictures;
+    std::filesystem::path cache = default_cache();
+};
+
+void add_options(CLI::App& app, Options& options) {
+    add_shared_options(app, options.shared);
+    app.add_flag("--original", options.original, "Only the original setting: 10 iterations, no preconditioner");
+    app.add_flag("--accurate", options.accurate, "Only what reaches an error of 0.5 % at t = 1 s");
+    const auto add_words = [&app](const std::string& option, std::vector<std::string>& target,
+                                  const std::vector<std::string>& choices, const std::string& what) {
+        app.add_option_function<std::string>(
+               option,
+               [option, &target, choices](const std::string& text) { target = parse_words(option, text, choices); },
+               what)
+            ->type_name("LIST");
+    };
+    add_words("--operator", options.operators, {"matrix_free", "edge_blocks", "block_rows"},
+              "Operators of lancet, a list out of: matrix_free, edge_blocks, block_rows");
+    std::vector<std::string> methods;
+    for (const Entry& entry : entries()) {
+        if (std::find(methods.begin(), methods.end(), entry.method) == methods.end()) methods.push_back(entry.method);
+    }
+    add_words("--method", options.methods, methods, "Only these methods");
+    app.add_option("--repetitions", options.repetitions, "Runs of every row, interleaved")->check(CLI::Range(1, 1000));
+    app.add_flag("--no-errors", options.no_errors, "Measure times only; converged solutions of large meshes are slow");
+    app.add_option("--pvd", options.pictures, "Write the motion of every row to FOLDER, for ParaView")
+        ->type_name("FOLDER");
+    app.add_option("--cache", options.cache, "Folder where converged solutions are kept")->type_name("FOLDER");
+    add_problem_options(app, options.problem);
+}
+
+/// The short run: a small Bar for 1 s, once.
+void make_quick(Options& options, const CLI::App& app) {
+    if (app.count("--mesh") + app.count("--cells") == 0) options.problem.cells = {20, 4, 4};
+    if (app.count("--steps") == 0) {
+        options.problem.steps = std::max(1, static_cast<int>(std::round(1 / options.problem.time_step)));
+    }
+    if (app.count("--repetitions") == 0) options.repetitions = 1;
+}
+
+bool asked_for(const Options& options, const Entry& entry) {
+    if (!options.methods.empty() &&
+        std::find(options.methods.begin(), options.methods.end(), entry.method) == options.methods.end()) {
+        return false;
+    }
+    if (entry.setting == "accurate") return !options.no_errors && (options.accurate || !options.original);
+    if (entry.setting == "default") return !options.accurate && !options.original;
+    return options.original || !options.accurate;
+}
+
+/// What all parts of a run need.
+struct Run {
+    const Options& options;
+    const Problem& problem;
+    const Reference& reference;
+    Progress& progress;
+    std::filesystem::path folder;
+};
+
+/// One short run to t = 1 s.
+struct Trial {
+    Job job;
+    double error = std::numeric_limits<double>::infinity();
+    double seconds = 0;
+};
+
+/// Follows the sequences of `entry` for the variation number `variation` of its jobs; see Entry::sequences.
+Job search(const Run& run, const Entry& entry, const Choice& choice, std::size_t variation) {
+    ProblemOptions one_second = run.options.problem;
+    one_second.steps = static_cast<int>(std::round(1 / one_second.time_step));
+    std::vector<Trial> trials;
+    for (const auto& sequence : entry.sequences) {
+        for (const auto& arguments : sequence) {
+            Trial trial{jobs_of(entry, arguments, choice, run.folder)[variation]};
+            run.progress.show("looking for " + std::to_string(accurate_error_percent) + " %: " + trial.job.label());
+            std::vector<std::vector<double>> snapshots;
+            const WorkerReport report =
+                run_worker(trial.job, one_second, {1.0}, run.problem.mesh.nodes().size(), snapshots);
+            const double error = error_percent(run.problem, snapshots.front(), run.reference.positions.front());
+            if (std::isfinite(error)) trial.error = error;
+            trial.seconds = report.seconds_total;
+            trials.push_back(trial);
+            if (trial.error <= accurate_error_percent) break;
+        }
+    }
+    return std::min_element(trials.begin(), trials.end(),
+                            [](const Trial& a, const Trial& b) {
+                                const bool a_reaches = a.error <= accurate_error_percent;
+                                const bool b_reaches = b.error <= accurate_error_percent;
+                                if (a_reaches != b_reaches) return a_reaches;
+                                return a_reaches ? a.seconds < b.seconds : a.error < b.error;
+                            })
+        ->job;
+}
+
+std::vector<Job> all_jobs(const Run& run, const Choice& choice) {
+    const bool can_search = !run.reference.times.empty() && run.reference.times.front() == 1.0;
+    std::vector<Job> jobs;
+    for (const Entry& entry : entries()) {
+        if (!asked_for(run.options, entry)) continue;
+        const std::vector<Job> plain = jobs_of(entry, entry.sequences.front().front(), choice, run.folder);
+        const bool single = entry.sequences.size() == 1 && entry.sequences.front().size() == 1;
+        if (single) {
+            jobs.insert(jobs.end(), plain.begin(), plain.end());
+            continue;
+        }
+        if (!can_search) {
+            if (run.options.accurate) {
+                throw Error("--accurate: the simulation has no step at t = 1 s, expected a time step that divides 1 s");
+            }
+            continue;
+        }
+        for (std::size_t i = 0; i < plain.size(); ++i) jobs.push_back(search(run, entry, choice, i));
+    }
+    if (jobs.empty()) throw Error("nothing to measure: no method has the setting asked for");
+    return jobs;
+}
+
+/// Positions at rest, found by the method of `job` itself.
+std::vector<double> rest_of(const Run& run, const Job& job) {
+    if (run.reference.positions_rest.empty()) return {};
+    const ProblemOptions rest = to_rest(run.options.problem, run.problem);
+    std::vector<std::vector<double>> snapshots;
+    run.progress.show("to rest: " + job.label());
+    run_worker(job, rest, {rest.steps * rest.time_step}, run.problem.mesh.nodes().size(), snapshots);
+    return snapshots.front();
+}
+
+nlohmann::ordered_json describe_problem(const Options& options, const Problem& problem) {
+    nlohmann::ordered_json json;
+    json["nodes"] = problem.mesh.nodes().size();
+    json["elements"] = problem.mesh.tetrahedra().size();
+    json["fixed_nodes"] = problem.fixed_nodes.size();
+    json["length"] = problem.length;
+    json["options"] = problem_arguments(options.problem);
+    json["notes"] = problem.notes;
+    return json;
+}
+
+nlohmann::ordered_json machine(const Options& options) {
+    const int threads = options.shared.threads.empty() ? 1 : options.shared.threads.back();
+    nlohmann::ordered_json json = runtime::machine_stamp("see rows", runtime::default_scheduler, threads);
+    json["worker_omp_wait_policy"] = worker_wait_policy;
+    return json;
+}
+
+ExitCode body(int argc, const char* const* argv) {
+    CLI::App app("The Bar: corotational tetrahedra by every method, time beside error");
+    Options options;
+    add_options(app, options);
+    if (!parse_command_line(app, argc, argv)) return ExitCode::success;
+    if (options.shared.quick) make_quick(options, app);
+    if (options.accurate && options.no_errors) throw Error("--accurate and --no-errors: found both, expected one");
+    const auto stamp = machine(options);
+
+    const Problem problem = make_problem(options.problem);
+    for (const std::string& note : problem.notes) std::cerr << options.problem.mesh << ": " << note << '\n';
+    const std::filesystem::path folder = this_program().parent_path();
+    Progress progress;
+    Reference reference;
+    if (!options.no_errors) {
+        const ReferenceChoice choice{.step_length = !options.shared.quick, .rest = !options.shared.quick};
+        reference = make_reference(options.problem, problem, choice, folder, options.cache, progress);
+    }
+    const Run run{options, problem, reference, progress, folder};
+
+    Choice choice;
+    if (!options.shared.scalars.empty()) choice.scalars = options.shared.scalars;
+    if (!options.shared.threads.empty()) choice.threads = options.shared.threads;
+    choice.schedulers = options.shared.schedulers;
+    choice.instruction_sets = options.shared.instruction_sets;
+    choice.operators = options.operators;
+    const std::vector<Job> jobs = all_jobs(run, choice);
+    const std::vector<JobResult> results =
+        run_jobs(jobs, options.repetitions, options.problem, reference.times, problem.mesh.nodes().size(), progress);
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const Errors errors = errors_of(problem, reference, results[i].snapshots, rest_of(run, jobs[i]));
+        rows.push_back(make_row(jobs[i], results[i].reports, errors, problem.time_step));
+    }
+    add_speedups(rows);
+    if (!options.pictures.empty()) {
+        for (const Row& row : rows) {
+            const std::string name = picture_name(row.job, row.report.scalar);
+            progress.show("pictures: " + name);
+            write_pictures(row.job, options.problem, problem, options.pictures, name);
+        }
+    }
+    const Table table = make_table(rows);
+    progress.clear();
+
+    table.print(std::cout);
+    if (options.shared.csv) table.write_csv(*options.shared.csv);
+    if (options.shared.json) {
+        nlohmann::ordered_json document;
+        document["machine"] = stamp;
+        document["problem"] = describe_problem(options, problem);
+        document["rows"] = table.to_json();
+        write_json_file(*options.shared.json, document);
+    }
+    for (const Row& row : rows) {
+        if (row.job.setting == "accurate" && !(row.errors.t1 && *row.errors.t1 <= accurate_error_percent)) {
+            throw CheckFailed(row.job.label() + " does not reach " + std::to_string(accurate_error_percent) +
+                              " % at t = 1 s");
+        }
+    }
+    return ExitCode::success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return run_main(argc, argv, body);
+}
