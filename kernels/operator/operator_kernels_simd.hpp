@@ -109,7 +109,7 @@ void edge_blocks(const ProductArguments<typename P::Real>& product, const RowArg
         Vector3<P> yi{P(Real(0)), P(Real(0)), P(Real(0))};
         for (std::int64_t entry = matrix.chunk_entry_begin[chunk]; entry < matrix.chunk_entry_begin[chunk + 1];
              ++entry) {
-            const Vector3<P> d = load_nodes<P>(product.z, matrix.column + entry * W) - zi;
+            const Vector3<P> zj = load_nodes<P>(product.z, matrix.column + entry * W), d = zj - zi;
             const Real* values = matrix.values + entry * 9 * W;
             const P k00 = P::load(values), k01 = P::load(values + W), k02 = P::load(values + 2 * W);
             const P k10 = P::load(values + 3 * W), k11 = P::load(values + 4 * W), k12 = P::load(values + 5 * W);
@@ -117,17 +117,18 @@ void edge_blocks(const ProductArguments<typename P::Real>& product, const RowArg
             const Vector3<P> f{fma(k02, d.z, fma(k01, d.y, k00 * d.x)), fma(k12, d.z, fma(k11, d.y, k10 * d.x)),
                                fma(k22, d.z, fma(k21, d.y, k20 * d.x))};
             yi = {yi.x + f.x, yi.y + f.y, yi.z + f.z};
-            quadratic -= dot(d, f);
             const Vector3<P> minus{-d.x, -d.y, -d.z};
             const Vector3<P> back{fma(k20, minus.z, fma(k10, minus.y, k00 * minus.x)),
                                   fma(k21, minus.z, fma(k11, minus.y, k01 * minus.x)),
                                   fma(k22, minus.z, fma(k12, minus.y, k02 * minus.x))};
+            quadratic += dot(zj, back);
             if (product.exclusive_slots) {
                 store_nodes(product.y, matrix.column_target + entry * W, back);
             } else {
                 add_to_nodes(product.y, matrix.column_target + entry * W, back);
             }
         }
+        quadratic += dot(zi, yi);
         add_to_nodes(product.y, matrix.row_target + chunk * W, yi);
     }
     product.quadratic[block] += static_cast<double>(sum(quadratic));
