@@ -17,14 +17,16 @@ template <class Result, class... Arguments>
 class FunctionReference<Result(Arguments...)> {
   public:
     /// Refers to `callable`, which may be a lambda, a function object or a function.
+    // NOLINTBEGIN(bugprone-forwarding-reference-overload): what that check fears is excluded by the constraint
     template <class Callable>
     requires(!std::same_as<std::remove_cvref_t<Callable>, FunctionReference> &&
              std::is_invocable_r_v<Result, Callable&, Arguments...>) FunctionReference(Callable&& callable)
-    noexcept  // NOLINT(bugprone-forwarding-reference-overload): excluded above
+    noexcept
         : object_(address_of(callable)), call_([](void* object, Arguments... arguments) -> Result {
               using Pointer = std::add_pointer_t<std::remove_reference_t<Callable>>;
               return std::invoke(*reinterpret_cast<Pointer>(object), std::forward<Arguments>(arguments)...);
           }) {}
+    // NOLINTEND(bugprone-forwarding-reference-overload)
 
     Result operator()(Arguments... arguments) const { return call_(object_, std::forward<Arguments>(arguments)...); }
 
