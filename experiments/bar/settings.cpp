@@ -1,5 +1,7 @@
 #include "lancet/experiments/bar/settings.hpp"
 
+#include <algorithm>
+
 namespace lancet::experiments::bar {
 namespace {
 
@@ -14,10 +16,13 @@ Arguments at_prediction(const std::string& preconditioner, int iterations) {
             "--preconditioner=" + preconditioner};
 }
 
-/// The same with rising numbers of iterations.
-std::vector<Arguments> rising(const std::string& preconditioner, const std::vector<int>& iterations) {
+/// The same with numbers of iterations that rise from `first` to 1000, by about 5 % each.
+std::vector<Arguments> rising(const std::string& preconditioner, int first) {
+    constexpr int last = 1000;
     std::vector<Arguments> result;
-    for (const int count : iterations) result.push_back(at_prediction(preconditioner, count));
+    for (int count = first; count <= last; count += std::max(1, count / 20)) {
+        result.push_back(at_prediction(preconditioner, count));
+    }
     return result;
 }
 
@@ -40,10 +45,9 @@ std::vector<Arguments> combined(const std::vector<Arguments>& arguments, const s
 std::vector<Entry> entries() {
     const std::string thesis = "bar_thesis";
     const std::string eigen = "bar_eigen";
-    const std::vector<int> iterations{10, 20, 30, 40, 50, 60, 70, 80, 100, 120, 160, 240, 400, 1000};
-    const auto none = rising("none", iterations);
-    const auto diagonal = rising("diagonal", iterations);
-    const auto incomplete = rising("incomplete-cholesky", {5, 10, 15, 20, 30, 50, 100, 300});
+    const auto none = rising("none", 10);
+    const auto diagonal = rising("diagonal", 10);
+    const auto incomplete = rising("incomplete-cholesky", 5);
     return {
         {"thesis", "original", thesis, {{original}}},
         {"thesis", "original-every-step", thesis, {{original_every_step}}},
