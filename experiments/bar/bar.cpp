@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,7 @@
 #include "lancet/kernels/error.hpp"
 #include "lancet/runtime/observe/machine_stamp.hpp"
 #include "lancet/runtime/observe/machine_stamp_json.hpp"
+#include "lancet/runtime/schedule/scheduler.hpp"
 
 namespace {
 
@@ -44,7 +46,7 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& options) {
-    add_shared_options(app, options.shared);
+    add_shared_options(app, options.shared, {.scalars = {"float", "mixed", "double"}});
     app.add_flag("--original", options.original, "Only the original setting: 10 iterations, no preconditioner");
     app.add_flag("--accurate", options.accurate, "Only what reaches an error of 0.5 % at t = 1 s");
     const auto add_words = [&app](const std::string& option, std::vector<std::string>& target,
@@ -55,8 +57,8 @@ void add_options(CLI::App& app, Options& options) {
                what)
             ->type_name("LIST");
     };
-    add_words("--operator", options.operators, {"matrix_free", "edge_blocks", "block_rows"},
-              "Operators of lancet, a list out of: matrix_free, edge_blocks, block_rows");
+    add_words("--operator", options.operators, {"matrix-free", "edge-blocks", "block-rows"},
+              "Operators of lancet, a list out of: matrix-free, edge-blocks, block-rows");
     std::vector<std::string> methods;
     for (const Entry& entry : entries()) {
         if (std::find(methods.begin(), methods.end(), entry.method) == methods.end()) methods.push_back(entry.method);
@@ -187,6 +189,21 @@ nlohmann::ordered_json describe_problem(const Options& options, const Problem& p
     return json;
 }
 
+/// The schedulers to measure unless asked otherwise: all but the one that exists for tests.
+std::vector<std::string> measured_schedulers() {
+    std::vector<std::string> names;
+    for (const runtime::SchedulerKind kind : runtime::available_schedulers()) {
+        if (kind != runtime::SchedulerKind::threads) names.emplace_back(runtime::to_string(kind));
+    }
+    return names;
+}
+
+/// The thread counts to measure unless asked otherwise: one, and all the machine has.
+std::vector<int> measured_threads() {
+    const auto all = static_cast<int>(std::thread::hardware_concurrency());
+    return all > 1 ? std::vector<int>{1, all} : std::vector<int>{1};
+}
+
 nlohmann::ordered_json machine(const Options& options) {
     const int threads = options.shared.threads.empty() ? 1 : options.shared.threads.back();
     nlohmann::ordered_json json = runtime::machine_stamp("see rows", runtime::default_scheduler, threads);
@@ -216,8 +233,9 @@ ExitCode body(int argc, const char* const* argv) {
 
     Choice choice;
     if (!options.shared.scalars.empty()) choice.scalars = options.shared.scalars;
-    if (!options.shared.threads.empty()) choice.threads = options.shared.threads;
+    choice.threads = options.shared.threads.empty() ? measured_threads() : options.shared.threads;
     choice.schedulers = options.shared.schedulers;
+    if (choice.schedulers.empty()) choice.schedulers = measured_schedulers();
     choice.instruction_sets = options.shared.instruction_sets;
     choice.operators = options.operators;
     const std::vector<Job> jobs = all_jobs(run, choice);

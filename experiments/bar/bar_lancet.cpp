@@ -141,7 +141,8 @@ WorkerReport simulate(const Problem& problem, const LancetOptions& options, Snap
     body->velocities(velocities);
     report.energy_final = energy(problem, flat(positions), flat(velocities)).total();
     report.method = "lancet";
-    report.variant = options.preconditioner + (options.no_safeguard ? " unguarded" : "");
+    report.variant = options.preconditioner + (options.no_safeguard ? " unguarded" : "") +
+                     (body->blocks() == 1 ? ", one block" : "");
     report.operator_ = options.matrix;
     report.scalar = options.scalar;
     report.isa = kernels::to_string(body->settings().instruction_set);

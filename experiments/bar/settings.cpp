@@ -48,7 +48,20 @@ std::vector<Entry> entries() {
     const auto none = rising("none", 10);
     const auto diagonal = rising("diagonal", 10);
     const auto incomplete = rising("incomplete-cholesky", 5);
+    const std::string lancet = "bar_lancet";
+    // The worker's own preconditioner for every setting but the original one, which has none.
+    const auto plain = [](Arguments arguments) {
+        arguments.emplace_back("--preconditioner=none");
+        return arguments;
+    };
+    Arguments one_block = at_prediction("coarse", 10);
+    one_block.insert(one_block.end(), {"--scheduler=serial", "--nodes-per-block=2000000000"});
     return {
+        {"lancet", "original", lancet, {{plain(original)}}, true},
+        {"lancet", "original-every-step", lancet, {{plain(original_every_step)}}, true},
+        {"lancet", "default", lancet, {{at_prediction("coarse", 10)}}, true},
+        {"lancet", "default", lancet, {{one_block}}},
+        {"lancet", "accurate", lancet, {rising("coarse", 2)}, true},
         {"thesis", "original", thesis, {{original}}},
         {"thesis", "original-every-step", thesis, {{original_every_step}}},
         {"thesis", "default", thesis, {{at_prediction("none", 10)}}},
@@ -68,7 +81,10 @@ std::string Job::label() const {
 
 std::vector<Job> jobs_of(const Entry& entry, const std::vector<std::string>& setting, const Choice& choice,
                          const std::filesystem::path& folder) {
-    std::vector<Arguments> lists = combined({setting}, "--scalar", choice.scalars);
+    std::vector<std::string> scalars = choice.scalars;
+    if (entry.method != "lancet") std::erase(scalars, "mixed");  // the baselines have no such mode
+    if (scalars.empty()) return {};
+    std::vector<Arguments> lists = combined({setting}, "--scalar", scalars);
     if (entry.all_schedulers) {
         lists = combined(lists, "--operator", choice.operators);
         lists = combined(lists, "--isa", choice.instruction_sets);
@@ -76,7 +92,9 @@ std::vector<Job> jobs_of(const Entry& entry, const std::vector<std::string>& set
     }
     std::vector<Job> jobs;
     for (const Arguments& list : lists) {
+        const bool is_serial = std::find(list.begin(), list.end(), "--scheduler=serial") != list.end();
         for (const int threads : choice.threads) {
+            if (is_serial && threads != 1) continue;
             jobs.push_back({entry.method, entry.setting, folder / entry.program, list, threads});
             jobs.back().arguments.push_back("--threads=" + std::to_string(threads));
         }

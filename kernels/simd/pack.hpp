@@ -98,7 +98,13 @@ struct Pack {
     LANCET_INLINE friend Pack operator+(Pack a, Pack b) { return {a.value + b.value}; }
     LANCET_INLINE friend Pack operator-(Pack a, Pack b) { return {a.value - b.value}; }
     LANCET_INLINE friend Pack operator*(Pack a, Pack b) { return {a.value * b.value}; }
-    LANCET_INLINE friend Pack operator/(Pack a, Pack b) { return {a.value / b.value}; }
+    /// The correctly rounded quotient (xsimd refines an estimate on NEON).
+    LANCET_INLINE friend Pack operator/(Pack a, Pack b) {
+#if defined(__aarch64__)
+        if constexpr (!one_lane && sizeof(Real) == 4) return {Batch(vdivq_f32(a.value, b.value))};
+#endif
+        return {a.value / b.value};
+    }
     LANCET_INLINE friend Pack operator-(Pack a) { return {-a.value}; }
 
     LANCET_INLINE friend Mask<Isa, Real> operator<(Pack a, Pack b) { return {a.value < b.value}; }
@@ -126,6 +132,10 @@ struct Pack {
 
     /// c - a b, rounded as fma is.
     LANCET_INLINE friend Pack fnma(Pack a, Pack b, Pack c) {
+#if defined(__aarch64__)
+        if constexpr (!one_lane && sizeof(Real) == 4) return {Batch(vfmsq_f32(c.value, a.value, b.value))};
+        if constexpr (!one_lane && sizeof(Real) == 8) return {Batch(vfmsq_f64(c.value, a.value, b.value))};
+#endif
         if constexpr (one_lane) {
             return {c.value - a.value * b.value};
 #if defined(__AVX512F__)
@@ -160,6 +170,9 @@ struct Pack {
 
     /// The correctly rounded square root.
     LANCET_INLINE friend Pack sqrt(Pack a) {
+#if defined(__aarch64__)
+        if constexpr (!one_lane && sizeof(Real) == 4) return {Batch(vsqrtq_f32(a.value))};
+#endif
         if constexpr (one_lane) {
             if constexpr (sizeof(Real) == 4) {
                 return {__builtin_sqrtf(a.value)};

@@ -113,12 +113,13 @@ class DeformableBody {
     virtual std::size_t bytes() const noexcept = 0;
     virtual int blocks() const noexcept = 0;
     virtual int coarse_unknowns() const noexcept = 0;
-    /// Operations and bytes of one product with the step matrix.
-    struct ProductWork {
+    /// Floating-point operations and bytes of one iteration of conjugate gradients: the product with the step matrix,
+    /// the preconditioner and the vector passes, each array counted once per pass.
+    struct Work {
         double flops = 0;
         double bytes = 0;
     };
-    virtual ProductWork product_work() const noexcept = 0;
+    virtual Work solve_work() const noexcept = 0;
 };
 
 /// Builds a body. The scheduler is used to set it up; each step takes one of its own. Throws lancet::Error for a scene
