@@ -104,85 +104,90 @@ LANCET_INLINE Corners<P> load_gradient_corners(const typename P::Real* source) {
     return b;
 }
 
-/// The loop of TetrahedronKernels::elastic for one rotation method. `Method` maps (F, start) to a quaternion.
-template <class P, bool UpdateRotation, class Method>
-LANCET_INLINE void elastic_loop(const TetrahedronArguments<typename P::Real>& a, int block, Method rotation) {
+/// Rotated gradients, force and energy of the batches [first, first + count), which are rotated together. The rotation
+/// method is a constant of the compilation; with UpdateRotation false the gradients that are stored are read instead.
+template <class P, bool UpdateRotation, RotationMethod method, int count>
+LANCET_INLINE void elastic_together(const TetrahedronArguments<typename P::Real>& a, std::int64_t first, P& energy) {
     using Real = typename P::Real;
     constexpr int W = P::width;
-    P energy(Real(0));
-    for (std::int32_t batch = a.block_batch_begin[block]; batch < a.block_batch_begin[block + 1]; ++batch) {
-        const std::int64_t at = batch;
-        const std::int32_t* nodes = a.nodes + at * 4 * W;
-        const Real* rest = a.rest + at * ElementBatches<Real>::rest_entries * W;
-        const P root = P::load(rest + 9 * W), lambda_over_mu = P::load(rest + 10 * W);
-
-        Corners<P> d;
-        for (int j = 0; j < 3; ++j) d.of[j] = load_differences<P>(a.positions, nodes + (j + 1) * W, nodes);
-
-        Corners<P> b;
-        Real* rotated = a.layout == GradientLayout::batches ? a.rotated + at * 9 * W : a.rotated + at * 16 * W;
-        if constexpr (UpdateRotation) {
-            b = load_corners<P>(rest);
-            const Matrix3<P> deformation = gradient(d, b);
-            Real* stored = a.quaternion + at * 4 * W;
-            const Quaternion<P> q = rotation(deformation, load_quaternion<P>(stored));
-            store_quaternion(stored, q);
-            const Matrix3<P> r = scale(to_matrix(q), root);
-            for (int j = 0; j < 3; ++j) b.of[j] = multiply(r, b.of[j]);
-            if (a.rotated == nullptr) {
-                // Nothing is kept.
-            } else if (a.layout == GradientLayout::batches) {
-                store_corners(rotated, b);
-            } else {
-                store_gradient_corners(rotated, b, lambda_over_mu);
-            }
-        } else {
-            b = a.layout == GradientLayout::batches ? load_corners<P>(rotated) : load_gradient_corners<P>(rotated);
+    const bool in_batches = a.layout == GradientLayout::batches;
+    Corners<P> d[count], b[count];
+    for (int k = 0; k < count; ++k) {
+        const std::int32_t* nodes = a.nodes + (first + k) * 4 * W;
+        for (int j = 0; j < 3; ++j) d[k].of[j] = load_differences<P>(a.positions, nodes + (j + 1) * W, nodes);
+    }
+    if constexpr (UpdateRotation) {
+        Matrix3<P> deformation[count];
+        Quaternion<P> q[count];
+        for (int k = 0; k < count; ++k) {
+            b[k] = load_corners<P>(a.rest + (first + k) * ElementBatches<Real>::rest_entries * W);
+            deformation[k] = gradient(d[k], b[k]);
+            q[k] = load_quaternion<P>(a.quaternion + (first + k) * 4 * W);
         }
-        if (a.force == nullptr && a.energy == nullptr) continue;
-
-        // sqrt(V mu) G, so that stress times gradient carries V mu once.
-        Matrix3<P> g = gradient(d, b);
-        for (int i = 0; i < 3; ++i) g.entry[i][i] -= root;
-        const Symmetric3<P> stress = hooke_stress(g, lambda_over_mu);
-        if (a.energy != nullptr) energy += hooke_energy(g, stress);
-        if (a.force != nullptr) {
-            Corners<P> f;
-            for (int j = 0; j < 3; ++j) {
-                const Vector3<P> pull = multiply(stress, b.of[j]);
-                f.of[j] = {-pull.x, -pull.y, -pull.z};
+        nearest_rotations<method>(deformation, q, a.rotation_steps);
+        for (int k = 0; k < count; ++k) {
+            store_quaternion(a.quaternion + (first + k) * 4 * W, q[k]);
+            const Real* rest = a.rest + (first + k) * ElementBatches<Real>::rest_entries * W;
+            const Matrix3<P> r = scale(to_matrix(q[k]), P::load(rest + 9 * W));
+            for (int j = 0; j < 3; ++j) b[k].of[j] = multiply(r, b[k].of[j]);
+            if (a.rotated == nullptr) continue;
+            if (in_batches) {
+                store_corners(a.rotated + (first + k) * 9 * W, b[k]);
+            } else {
+                store_gradient_corners(a.rotated + (first + k) * 16 * W, b[k], P::load(rest + 10 * W));
             }
-            scatter(a.force, a.targets + at * 4 * W, f, a.exclusive_slots);
+        }
+    } else {
+        for (int k = 0; k < count; ++k) {
+            b[k] = in_batches ? load_corners<P>(a.rotated + (first + k) * 9 * W)
+                              : load_gradient_corners<P>(a.rotated + (first + k) * 16 * W);
         }
     }
+    if (a.force == nullptr && a.energy == nullptr) return;
+    for (int k = 0; k < count; ++k) {
+        // sqrt(V mu) G, so that stress times gradient carries V mu once.
+        const Real* rest = a.rest + (first + k) * ElementBatches<Real>::rest_entries * W;
+        const P root = P::load(rest + 9 * W);
+        Matrix3<P> g = gradient(d[k], b[k]);
+        for (int i = 0; i < 3; ++i) g.entry[i][i] -= root;
+        const Symmetric3<P> stress = hooke_stress(g, P::load(rest + 10 * W));
+        if (a.energy != nullptr) energy += hooke_energy(g, stress);
+        if (a.force == nullptr) continue;
+        Corners<P> f;
+        for (int j = 0; j < 3; ++j) {
+            const Vector3<P> pull = multiply(stress, b[k].of[j]);
+            f.of[j] = {-pull.x, -pull.y, -pull.z};
+        }
+        scatter(a.force, a.targets + (first + k) * 4 * W, f, a.exclusive_slots);
+    }
+}
+
+/// The loop of TetrahedronKernels::elastic for one rotation method.
+template <class P, bool UpdateRotation, RotationMethod method>
+void elastic_loop(const TetrahedronArguments<typename P::Real>& a, int block) {
+    constexpr int together = UpdateRotation ? batches_together<method> : 1;
+    P energy(typename P::Real(0));
+    std::int64_t batch = a.block_batch_begin[block];
+    const std::int64_t end = a.block_batch_begin[block + 1];
+    for (; batch + together <= end; batch += together) {
+        elastic_together<P, UpdateRotation, method, together>(a, batch, energy);
+    }
+    for (; batch < end; ++batch) elastic_together<P, UpdateRotation, method, 1>(a, batch, energy);
     if (a.energy != nullptr) a.energy[block] = static_cast<double>(sum(energy));
 }
 
 template <class P>
 void elastic(const TetrahedronArguments<typename P::Real>& a, int block) {
-    if (!a.update_rotation) {
-        elastic_loop<P, false>(a, block, [](const Matrix3<P>&, const Quaternion<P>& start) { return start; });
-        return;
-    }
-    const int steps = a.rotation_steps;
+    if (!a.update_rotation) return elastic_loop<P, false, RotationMethod::quaternion>(a, block);
     switch (a.method) {
         case RotationMethod::quaternion:
-            elastic_loop<P, true>(a, block, [steps](const Matrix3<P>& f, const Quaternion<P>& start) {
-                return quaternion_rotation(f, start, steps);
-            });
-            break;
+            return elastic_loop<P, true, RotationMethod::quaternion>(a, block);
         case RotationMethod::robust:
-            elastic_loop<P, true>(a, block, [steps](const Matrix3<P>& f, const Quaternion<P>& start) {
-                return robust_rotation(f, start, steps);
-            });
-            break;
+            return elastic_loop<P, true, RotationMethod::robust>(a, block);
         case RotationMethod::polar:
-            elastic_loop<P, true>(a, block,
-                                  [](const Matrix3<P>& f, const Quaternion<P>&) { return polar_rotation(f); });
-            break;
+            return elastic_loop<P, true, RotationMethod::polar>(a, block);
         case RotationMethod::svd:
-            elastic_loop<P, true>(a, block, [](const Matrix3<P>& f, const Quaternion<P>&) { return svd_rotation(f); });
-            break;
+            return elastic_loop<P, true, RotationMethod::svd>(a, block);
     }
 }
 

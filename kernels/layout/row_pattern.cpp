@@ -142,8 +142,12 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
         std::vector<std::int32_t> order(
             static_cast<std::size_t>(numbering.block_begin[block + 1] - numbering.block_begin[block]));
         std::iota(order.begin(), order.end(), numbering.block_begin[block]);
-        std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return length[a] > length[b]; });
-        spread_lanes(order, length, lanes);
+        // By length, and then by contributions: where every row has one block (the diagonal) these still differ.
+        std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+            return length[a] != length[b] ? length[a] > length[b]
+                                          : contributions.row(a).size() > contributions.row(b).size();
+        });
+        if (content != RowContent::diagonal) spread_lanes(order, length, lanes);
 
         for (std::size_t first = 0; first < order.size(); first += lanes) {
             std::size_t entries = 0;

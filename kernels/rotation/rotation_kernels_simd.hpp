@@ -24,6 +24,22 @@ LANCET_INLINE Quaternion<P> nearest_rotation(const Matrix3<P>& f, const Quaterni
     }
 }
 
+/// The rotations of `count` batches together, where the method gains from it; q holds the starts and takes the results.
+template <RotationMethod method, int count, class P>
+LANCET_INLINE void nearest_rotations(const Matrix3<P> (&f)[count], Quaternion<P> (&q)[count], int steps) {
+    if constexpr (method == RotationMethod::quaternion) {
+        quaternion_rotations(f, q, steps);
+    } else if constexpr (method == RotationMethod::robust) {
+        robust_rotations(f, q, steps);
+    } else {
+        for (int i = 0; i < count; ++i) q[i] = nearest_rotation<method>(f[i], q[i], steps);
+    }
+}
+
+/// How many batches a method rotates together.
+template <RotationMethod method>
+constexpr int batches_together = method == RotationMethod::quaternion || method == RotationMethod::robust ? 2 : 1;
+
 /// The batches [batch, batch + count), by one method.
 template <RotationMethod method, int count, class P>
 LANCET_INLINE void decompose_together(int steps, const typename P::Real* deformation_gradient,
@@ -34,13 +50,7 @@ LANCET_INLINE void decompose_together(int steps, const typename P::Real* deforma
         f[i] = load_matrix<P>(deformation_gradient + (batch + i) * 9 * P::width);
         q[i] = load_quaternion<P>(quaternion + (batch + i) * 4 * P::width);
     }
-    if constexpr (method == RotationMethod::quaternion) {
-        quaternion_rotations(f, q, steps);
-    } else if constexpr (method == RotationMethod::robust) {
-        robust_rotations(f, q, steps);
-    } else {
-        for (int i = 0; i < count; ++i) q[i] = nearest_rotation<method>(f[i], q[i], steps);
-    }
+    nearest_rotations<method>(f, q, steps);
     for (int i = 0; i < count; ++i) store_quaternion(quaternion + (batch + i) * 4 * P::width, q[i]);
 }
 
@@ -48,7 +58,7 @@ LANCET_INLINE void decompose_together(int steps, const typename P::Real* deforma
 template <RotationMethod method, class P>
 void decompose_batches(int steps, const typename P::Real* deformation_gradient, typename P::Real* quaternion, int begin,
                        int end) {
-    constexpr int together = method == RotationMethod::quaternion || method == RotationMethod::robust ? 2 : 1;
+    constexpr int together = batches_together<method>;
     std::ptrdiff_t batch = begin;
     for (; batch + together <= end; batch += together) {
         decompose_together<method, together, P>(steps, deformation_gradient, quaternion, batch);
