@@ -4,6 +4,7 @@
 
 #include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
 #include "lancet/kernels/isa/instances.hpp"
+#include "lancet/kernels/operator/coarse_kernels_simd.hpp"
 #include "lancet/kernels/operator/operator_kernels_simd.hpp"
 #include "lancet/kernels/peak/peak_kernels_simd.hpp"
 #include "lancet/kernels/rotation/rotation_kernels_simd.hpp"
@@ -22,6 +23,7 @@ constexpr KernelSet<Real> make_kernel_set(InstructionSet instruction_set) {
             .tetrahedron = make_tetrahedron_kernels<P>(),
             .matrix = make_operator_kernels<P>(),
             .diagonal = make_diagonal_kernels<P>(),
+            .coarse = make_coarse_kernels<P>(),
             .vector = make_vector_kernels<P, P>(),
             .vector_mixed = make_vector_kernels<P, Pack<Isa, double>>(),
             .peak = make_peak_kernels<P>()};

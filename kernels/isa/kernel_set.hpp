@@ -2,6 +2,7 @@
 
 #include "lancet/kernels/element/tetrahedron_kernels.hpp"
 #include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/kernels/operator/coarse_kernels.hpp"
 #include "lancet/kernels/operator/operator_kernels.hpp"
 #include "lancet/kernels/peak/peak_kernels.hpp"
 #include "lancet/kernels/rotation/rotation_kernels.hpp"
@@ -19,6 +20,7 @@ struct KernelSet {
     TetrahedronKernels<Real> tetrahedron;
     OperatorKernels<Real> matrix;
     DiagonalKernels<Real> diagonal;
+    CoarseKernels<Real> coarse;
     VectorKernels<Real, Real> vector;
     VectorKernels<Real, double> vector_mixed;  ///< operator in Real, solution and residual in double
     PeakKernels<Real> peak;                    ///< the machine's limit, to stand beside what is reached

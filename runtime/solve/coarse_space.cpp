@@ -46,6 +46,7 @@ constexpr int modes = 6;
 struct CoarseMatrices {
     std::vector<std::vector<CrossingEdge>> crossing;  ///< [block]
     std::vector<std::vector<AggregatePair>> pairs;    ///< [block]
+    std::vector<double> inside;                       ///< [aggregate][kernels::coarse_diagonal_sums]
     std::vector<Matrix6> diagonal;                    ///< [aggregate]
     std::vector<Matrix6> basis;  ///< [aggregate] raw modes to orthonormal ones; zero columns left out
 
@@ -66,8 +67,10 @@ struct CoarseMatrices {
 };
 
 template <class Real>
-CoarseSpace<Real>::CoarseSpace(const kernels::NodeNumbering& numbering, const BlockMatrix<Real>& edges)
-    : numbering_(&numbering),
+CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const kernels::NodeNumbering& numbering,
+                               const BlockMatrix<Real>& edges)
+    : kernels_(&kernels),
+      numbering_(&numbering),
       edges_(&edges),
       aggregate_of_(static_cast<std::size_t>(numbering.node_count), -1),
       offset_(static_cast<std::size_t>(numbering.node_count) * 4),
@@ -83,6 +86,7 @@ CoarseSpace<Real>::CoarseSpace(const kernels::NodeNumbering& numbering, const Bl
         }
     }
     m.diagonal.resize(static_cast<std::size_t>(numbering.aggregates()));
+    m.inside.resize(m.diagonal.size() * kernels::coarse_diagonal_sums);
     m.basis.resize(m.diagonal.size());
     m.crossing.resize(static_cast<std::size_t>(numbering.blocks()));
     m.pairs.resize(m.crossing.size());
@@ -246,36 +250,42 @@ void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
         }
         return k;
     };
-    // Masses: sum m T^T T with T = [1, -[r]x].
-    for (std::int32_t a = numbering_->block_aggregate_begin[block]; a < numbering_->block_aggregate_begin[block + 1];
-         ++a) {
+    // Masses, sum m T^T T with T = [1, -[r]x], and the edges within an aggregate.
+    const std::int32_t first_aggregate = numbering_->block_aggregate_begin[block],
+                       last_aggregate = numbering_->block_aggregate_begin[block + 1];
+    std::fill(m.inside.begin() + first_aggregate * kernels::coarse_diagonal_sums,
+              m.inside.begin() + last_aggregate * kernels::coarse_diagonal_sums, 0.0);
+    kernels_->coarse.diagonal({.block_chunk_begin = pattern.block_chunk_begin.data(),
+                               .chunk_entry_begin = pattern.chunk_entry_begin.data(),
+                               .row = pattern.row.data(),
+                               .column = pattern.column.data(),
+                               .values = values,
+                               .aggregate = aggregate_of_.data(),
+                               .offset = offset_.data(),
+                               .sums = m.inside.data()},
+                              block);
+    for (std::int32_t a = first_aggregate; a < last_aggregate; ++a) {
+        double mass = 0;
+        Vector3 moment = Vector3::Zero();
+        Matrix3 second_moment = Matrix3::Zero();
+        for (std::int32_t node = numbering_->aggregate_begin[a]; node < numbering_->aggregate_begin[a + 1]; ++node) {
+            const auto nodal = static_cast<double>(scaled_mass[node]);
+            const Vector3 r = offset(node);
+            mass += nodal;
+            moment += nodal * r;
+            second_moment += nodal * r * r.transpose();
+        }
+        Eigen::Map<const Eigen::Matrix<double, kernels::coarse_diagonal_sums, 1>> inside(
+            m.inside.data() + a * kernels::coarse_diagonal_sums);
         Matrix6& diagonal = m.diagonal[a];
         diagonal.setZero();
-        for (std::int32_t node = numbering_->aggregate_begin[a]; node < numbering_->aggregate_begin[a + 1]; ++node) {
-            const auto mass = static_cast<double>(scaled_mass[node]);
-            if (mass == 0) continue;
-            const Vector3 r = offset(node);
-            diagonal.topLeftCorner<3, 3>().diagonal().array() += mass;
-            diagonal.topRightCorner<3, 3>() -= mass * cross_matrix(r);
-            diagonal.bottomRightCorner<3, 3>() += mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
-        }
-    }
-    // Edges within an aggregate: only the rotation of the difference d = omega x (r_j - r_i) counts.
-    for (std::int64_t chunk = pattern.block_chunk_begin[block]; chunk < pattern.block_chunk_begin[block + 1]; ++chunk) {
-        for (std::int64_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
-             ++entry) {
-            for (int lane = 0; lane < width; ++lane) {
-                const std::int32_t row = pattern.row[chunk * width + lane],
-                                   column = pattern.column[entry * width + lane];
-                const std::int32_t a = aggregate_of_[row];
-                if (row == column || aggregate_of_[column] != a) continue;
-                const Vector3 ri = offset(row), rj = offset(column);
-                const Matrix3 k = matrix(entry * 9 * width + lane), e = -cross_matrix(rj - ri);
-                const Matrix3 ke = k * e, kte = k.transpose() * e;
-                m.diagonal[a].topRightCorner<3, 3>() += ke - kte;
-                m.diagonal[a].bottomRightCorner<3, 3>() += cross_matrix(ri) * ke - cross_matrix(rj) * kte;
-            }
-        }
+        diagonal.topLeftCorner<3, 3>().diagonal().setConstant(mass);
+        diagonal.topRightCorner<3, 3>() =
+            Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(inside.data()) - cross_matrix(moment);
+        Matrix3 rotation;
+        rotation << inside[9], inside[12], inside[13], inside[12], inside[10], inside[14], inside[13], inside[14],
+            inside[11];
+        diagonal.bottomRightCorner<3, 3>() = rotation + second_moment.trace() * Matrix3::Identity() - second_moment;
     }
     for (AggregatePair& pair : m.pairs[block]) {
         pair.coupling.setZero();

@@ -26,7 +26,8 @@ class CoarseSpace {
     static constexpr int dense_limit = 120;
 
     /// `edges` must be of content upper_edges.
-    CoarseSpace(const kernels::NodeNumbering& numbering, const BlockMatrix<Real>& edges);
+    CoarseSpace(const kernels::KernelSet<Real>& kernels, const kernels::NodeNumbering& numbering,
+                const BlockMatrix<Real>& edges);
     ~CoarseSpace();
     CoarseSpace(CoarseSpace&&) noexcept;
 
@@ -57,6 +58,7 @@ class CoarseSpace {
     void accumulate(const Real* scaled_mass, int block);
     bool factorise();
 
+    const kernels::KernelSet<Real>* kernels_;
     const kernels::NodeNumbering* numbering_;
     const BlockMatrix<Real>* edges_;
     std::vector<std::int32_t> aggregate_of_;  ///< [node], -1 at fixed nodes

@@ -36,10 +36,10 @@ Preconditioner<Real>::Preconditioner(PreconditionerKind kind, ElasticElements<Re
     inverse_.resize(static_cast<std::size_t>(elements.numbering().free_count) * 6);
     if (kind != PreconditionerKind::coarse) return;
     if (matrix.kind() == OperatorKind::edge_blocks) {
-        coarse_.emplace(elements.numbering(), static_cast<RowOperator<Real>&>(matrix).matrix());
+        coarse_.emplace(elements.kernels(), elements.numbering(), static_cast<RowOperator<Real>&>(matrix).matrix());
     } else {
         own_edges_.emplace(kernels::RowContent::upper_edges, elements, definition);
-        coarse_.emplace(elements.numbering(), *own_edges_);
+        coarse_.emplace(elements.kernels(), elements.numbering(), *own_edges_);
     }
 }
 
