@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <limits>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +13,7 @@
 #include "lancet/experiments/bar/problem.hpp"
 #include "lancet/experiments/bar/reference.hpp"
 #include "lancet/experiments/bar/rows.hpp"
+#include "lancet/experiments/bar/search.hpp"
 #include "lancet/experiments/bar/settings.hpp"
 #include "lancet/experiments/bar/workers.hpp"
 #include "lancet/experiments/common/file.hpp"
@@ -100,51 +100,6 @@ struct Run {
     std::filesystem::path folder;
 };
 
-/// One short run to t = 1 s.
-struct Trial {
-    Job job;
-    double error = std::numeric_limits<double>::infinity();
-    double seconds = 0;
-};
-
-/// Searches the sequences of `entry` for the variation number `variation` of its jobs; see Entry::sequences.
-Job search(const Run& run, const Entry& entry, const Choice& choice, std::size_t variation) {
-    ProblemOptions one_second = run.options.problem;
-    one_second.steps = static_cast<int>(std::round(1 / one_second.time_step));
-    const auto attempt = [&](const std::vector<std::string>& arguments) {
-        Trial trial{jobs_of(entry, arguments, choice, run.folder)[variation]};
-        run.progress.show("looking for " + format_number(accurate_error_percent, 3) + " %: " + trial.job.label());
-        std::vector<std::vector<double>> snapshots;
-        const WorkerReport report =
-            run_worker(trial.job, one_second, {1.0}, run.problem.mesh.nodes().size(), snapshots);
-        const double error = error_percent(run.problem, snapshots.front(), run.reference.positions.front());
-        if (std::isfinite(error)) trial.error = error;
-        trial.seconds = report.seconds_total;
-        return trial;
-    };
-    std::vector<Trial> trials;
-    for (const auto& sequence : entry.sequences) {
-        // Bisection: errors fall along a sequence.
-        for (std::size_t begin = 0, end = sequence.size(); begin < end;) {
-            const std::size_t middle = begin + (end - begin) / 2;
-            trials.push_back(attempt(sequence[middle]));
-            if (trials.back().error <= accurate_error_percent) {
-                end = middle;
-            } else {
-                begin = middle + 1;
-            }
-        }
-    }
-    return std::min_element(trials.begin(), trials.end(),
-                            [](const Trial& a, const Trial& b) {
-                                const bool a_reaches = a.error <= accurate_error_percent;
-                                const bool b_reaches = b.error <= accurate_error_percent;
-                                if (a_reaches != b_reaches) return a_reaches;
-                                return a_reaches ? a.seconds < b.seconds : a.error < b.error;
-                            })
-        ->job;
-}
-
 std::vector<Job> all_jobs(const Run& run, const Choice& choice) {
     const bool can_search = !run.reference.times.empty() && run.reference.times.front() == 1.0;
     std::vector<Job> jobs;
@@ -162,7 +117,10 @@ std::vector<Job> all_jobs(const Run& run, const Choice& choice) {
             }
             continue;
         }
-        for (std::size_t i = 0; i < plain.size(); ++i) jobs.push_back(search(run, entry, choice, i));
+        for (std::size_t i = 0; i < plain.size(); ++i) {
+            jobs.push_back(search(entry, choice, i, run.options.problem, run.problem, run.reference.positions.front(),
+                                  run.folder, run.progress));
+        }
     }
     if (jobs.empty()) throw Error("nothing to measure: no method has the setting asked for");
     return jobs;

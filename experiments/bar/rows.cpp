@@ -90,6 +90,7 @@ const Row* find(const std::vector<Row>& rows, const auto& condition) {
 Row make_row(const Job& job, const std::vector<WorkerReport>& reports, const Errors& errors, double time_step) {
     if (reports.empty()) throw Error(job.label() + ": no reports found, expected at least one");
     std::vector<double> totals;
+    totals.reserve(reports.size());
     for (const WorkerReport& report : reports) totals.push_back(report.seconds_total);
     const Summary summary = summarize(totals);
     std::vector<std::size_t> order(reports.size());
@@ -136,10 +137,12 @@ void add_speedups(std::vector<Row>& rows) {
 Table make_table(std::span<const Row> rows) {
     const std::vector<Field> all = fields();
     std::vector<Column> columns;
+    columns.reserve(all.size());
     for (const Field& field : all) columns.push_back(field.column);
     Table table(columns);
     for (const Row& row : rows) {
         std::vector<Cell> cells;
+        cells.reserve(all.size());
         for (const Field& field : all) cells.push_back(field.value(row));
         table.add_row(std::move(cells));
     }

@@ -34,7 +34,8 @@ std::vector<Arguments> combined(const std::vector<Arguments>& arguments, const s
     for (const Arguments& list : arguments) {
         for (const std::string& value : values) {
             result.push_back(list);
-            result.back().push_back(option + "=" + value);
+            result.back().push_back(option);
+            result.back().back().append("=").append(value);
         }
     }
     return result;

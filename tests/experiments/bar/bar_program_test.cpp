@@ -40,6 +40,7 @@ TEST(BarProgram, MeasuresWritesAndKeepsItsReference) {
     const std::vector<std::string> arguments{"--quick",
                                              "--cells=8,2,2",
                                              "--method=eigen,thesis",
+                                             "--threads=1",
                                              "--scalar=float,double",
                                              cache,
                                              "--json=" + json_file.string(),

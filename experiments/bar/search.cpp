@@ -1,0 +1,75 @@
+#include "lancet/experiments/bar/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lancet/experiments/bar/errors.hpp"
+#include "lancet/experiments/bar/workers.hpp"
+#include "lancet/experiments/common/table.hpp"
+
+namespace lancet::experiments::bar {
+namespace {
+
+/// One run to t = 1 s.
+struct Trial {
+    Job job;
+    double error = std::numeric_limits<double>::infinity();
+};
+
+bool reaches(const Trial& trial) {
+    return trial.error <= accurate_error_percent;
+}
+
+double fastest(const JobResult& result) {
+    double seconds = std::numeric_limits<double>::infinity();
+    for (const WorkerReport& report : result.reports) seconds = std::min(seconds, report.seconds_total);
+    return seconds;
+}
+
+}  // namespace
+
+Job search(const Entry& entry, const Choice& choice, std::size_t variation, const ProblemOptions& options,
+           const Problem& problem, const std::vector<double>& reference, const std::filesystem::path& folder,
+           Progress& progress) {
+    constexpr int timings = 3;
+    const std::size_t nodes = problem.mesh.nodes().size();
+    ProblemOptions one_second = options;
+    one_second.steps = static_cast<int>(std::round(1 / one_second.time_step));
+    const auto attempt = [&](const std::vector<std::string>& arguments) {
+        Trial trial{jobs_of(entry, arguments, choice, folder)[variation]};
+        progress.show("looking for " + format_number(accurate_error_percent, 3) + " %: " + trial.job.label());
+        std::vector<std::vector<double>> snapshots;
+        run_worker(trial.job, one_second, {1.0}, nodes, snapshots);
+        const double error = error_percent(problem, snapshots.front(), reference);
+        if (std::isfinite(error)) trial.error = error;
+        return trial;
+    };
+
+    std::vector<Job> ends;
+    std::optional<Trial> least_wrong;
+    for (const auto& sequence : entry.sequences) {
+        std::optional<Trial> end;
+        for (std::size_t first = 0, last = sequence.size(); first < last;) {
+            const std::size_t middle = first + (last - first) / 2;
+            const Trial trial = attempt(sequence[middle]);
+            if (!least_wrong || trial.error < least_wrong->error) least_wrong = trial;
+            if (reaches(trial)) {
+                end = trial;
+                last = middle;
+            } else {
+                first = middle + 1;
+            }
+        }
+        if (end) ends.push_back(end->job);
+    }
+    if (ends.empty()) return least_wrong->job;
+    if (ends.size() == 1) return ends.front();
+    const std::vector<JobResult> results = run_jobs(ends, timings, one_second, {}, nodes, progress);
+    const auto best = std::min_element(results.begin(), results.end(),
+                                       [](const JobResult& a, const JobResult& b) { return fastest(a) < fastest(b); });
+    return ends[static_cast<std::size_t>(best - results.begin())];
+}
+
+}  // namespace lancet::experiments::bar
