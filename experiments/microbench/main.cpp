@@ -1,11 +1,17 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <nlohmann/json.hpp>
 
+#include "lancet/experiments/microbench/samples.hpp"
 #include "lancet/experiments/microbench/subjects.hpp"
 #include "lancet/runtime/observe/machine_stamp.hpp"
 #include "lancet/runtime/observe/machine_stamp_json.hpp"
@@ -37,11 +43,25 @@ void add_machine_stamp() {
     }
 }
 
+/// The sizes of the Bar, from the first caches to memory. Those that take long are left out unless `--large` was given
+/// or the filter names their number of elements.
+std::vector<std::array<int, 3>> cells_to_measure(bool large, const std::string& filter) {
+    std::vector<std::array<int, 3>> cells{{10, 2, 2}, {40, 8, 8}};
+    for (const std::array<int, 3>& one : {std::array{80, 16, 16}, std::array{160, 32, 32}}) {
+        if (large || filter.find(std::to_string(elements_of(one))) != std::string::npos) cells.push_back(one);
+    }
+    return cells;
+}
+
 int run(int count, char** arguments) {
-    // Counters as columns, unless asked otherwise.
+    // Counters as columns and short runs, unless asked otherwise: what comes later on the command line counts.
     std::string tabular = "--benchmark_counters_tabular=true";
+    std::string shortly = "--benchmark_min_time=0.1";
     std::vector<char*> all(arguments, arguments + count);
+    const bool large =
+        std::erase_if(all, [](const char* argument) { return std::string_view(argument) == "--large"; }) > 0;
     all.insert(all.begin() + 1, tabular.data());
+    if (std::getenv("BENCHMARK_MIN_TIME") == nullptr) all.insert(all.begin() + 1, shortly.data());
     int size = static_cast<int>(all.size());
     all.push_back(nullptr);
     benchmark::Initialize(&size, all.data());
@@ -49,12 +69,13 @@ int run(int count, char** arguments) {
     add_machine_stamp();
     register_peak();
     register_rotation();
+    const std::shared_ptr<Samples> samples = register_solver(cells_to_measure(large, benchmark::GetBenchmarkFilter()));
     if (benchmark::RunSpecifiedBenchmarks() == 0) {
         std::cerr << "microbench: no benchmark matches the filter\n";
         return 2;
     }
     benchmark::Shutdown();
-    return 0;
+    return samples->failures() == 0 ? 0 : 1;
 }
 
 }  // namespace

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "lancet/kernels/isa/instruction_set.hpp"
 
 namespace lancet::experiments {
+
+class Samples;
 
 /// The instruction sets that are compiled in and that this machine executes; the others stand in the context of the
 /// results as not run.
@@ -21,5 +25,9 @@ constexpr const char* scalar_name() {
 
 void register_peak();
 void register_rotation();
+
+/// Forces, assembly, products, vector passes and preconditioners, on the Bar with each of the `cells`. Returns what
+/// they are measured on, which counts failures.
+std::shared_ptr<Samples> register_solver(const std::vector<std::array<int, 3>>& cells);
 
 }  // namespace lancet::experiments

@@ -1,0 +1,43 @@
+#include "lancet/experiments/microbench/machine_limits.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include <benchmark/benchmark.h>
+
+#include "lancet/kernels/isa/kernel_set.hpp"
+#include "lancet/runtime/observe/bandwidth.hpp"
+#include "lancet/runtime/observe/clock.hpp"
+
+namespace lancet::experiments {
+
+template <class Real>
+double MachineLimits::peak_gflops(kernels::InstructionSet instruction_set) {
+    double& best = peaks_[{sizeof(Real), instruction_set}];
+    if (best > 0) return best;
+    const kernels::PeakKernels<Real>& peak = kernels::kernel_set<Real>(instruction_set).peak;
+    constexpr long long iterations = 100'000;  // about a millisecond
+    constexpr int runs = 10;
+    for (int run = 0; run < runs; ++run) {
+        const double start = runtime::steady_seconds();
+        benchmark::DoNotOptimize(peak.run(iterations, Real(0.5), Real(0.25)));
+        const double seconds = runtime::steady_seconds() - start;
+        best = std::max(best, peak.operations_per_iteration * static_cast<double>(iterations) * 1e-9 / seconds);
+    }
+    return best;
+}
+
+template double MachineLimits::peak_gflops<float>(kernels::InstructionSet);
+template double MachineLimits::peak_gflops<double>(kernels::InstructionSet);
+
+double MachineLimits::read_gbytes_per_s(double bytes) {
+    constexpr std::size_t least = 4096;
+    const std::size_t working_set = std::bit_ceil(std::max(static_cast<std::size_t>(bytes), least));
+    const auto found = bandwidths_.find(working_set);
+    if (found != bandwidths_.end()) return found->second;
+    constexpr int repetitions = 5;
+    return bandwidths_[working_set] =
+               runtime::measure_bandwidth(*scheduler_, working_set, repetitions).read_gbytes_per_s;
+}
+
+}  // namespace lancet::experiments
