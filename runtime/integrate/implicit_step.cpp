@@ -92,6 +92,16 @@ void ImplicitStep<Real, Accumulate>::move(Scheduler& scheduler, BodyMotion& moti
 }
 
 template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::add_change(Scheduler& scheduler, BodyMotion& motion) {
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            motion.velocity[i] += static_cast<double>(change_[i]);
+        }
+    });
+}
+
+template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads,
                                                bool renew) {
     const double h = step_length();
@@ -184,12 +194,7 @@ void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyM
     timer.add_to(totals.seconds_rest);
     solve(scheduler, filter, report);
     timer.add_to(totals.seconds_solve);
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
-        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
-        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
-            motion.velocity[i] += static_cast<double>(change_[i]);
-        }
-    });
+    add_change(scheduler, motion);
     move(scheduler, motion, step_length());
     report.newton_iterations = 1;
     timer.add_to(totals.seconds_rest);
@@ -199,7 +204,9 @@ template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                             const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
     const double h = step_length();
-    double reference = 0;
+    double reference = 0, potential = 0;
+    // A line search needs the potential of all forces, which stiffness-proportional damping does not have.
+    const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0;
     for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
         Timer timer;
         move(scheduler, motion, h);
@@ -223,12 +230,17 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         if (iteration > 0 && std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * reference) break;
         solve(scheduler, filter, report);
         timer.add_to(totals.seconds_solve);
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
-            const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
-            for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
-                motion.velocity[i] += static_cast<double>(change_[i]);
-            }
-        });
+        if (iterates) {
+            // Where no step along the direction descends, the iterate is as good as the scalar type allows.
+            if (iteration == 0) potential = incremental_potential(scheduler, motion.velocity, loads);
+            const double rounding = 64 * std::numeric_limits<Real>::epsilon() * std::abs(potential);
+            const bool descended = descend(scheduler, motion, loads, potential, rounding);
+            timer.add_to(totals.seconds_forces);
+            ++report.newton_iterations;
+            if (!descended) break;
+            continue;
+        }
+        add_change(scheduler, motion);
         ++report.newton_iterations;
         timer.add_to(totals.seconds_rest);
     }
@@ -297,6 +309,23 @@ double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& schedule
 }
 
 template <class Real, class Accumulate>
+bool ImplicitStep<Real, Accumulate>::descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                             double& potential, double rounding) {
+    double length = 1;
+    for (int halving = 0; halving < 12; ++halving, length /= 2) {
+        for (std::size_t i = 0; i < trial_velocity_.size(); ++i) {
+            trial_velocity_[i] = motion.velocity[i] + length * static_cast<double>(change_[i]);
+        }
+        const double trial = incremental_potential(scheduler, trial_velocity_, loads);
+        if (!(trial < potential + rounding)) continue;
+        potential = trial;
+        motion.velocity = trial_velocity_;
+        return true;
+    }
+    return false;
+}
+
+template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                                const ConstraintFilter& filter, std::span<const double> before_hold,
                                                StepReport& report, StepTotals& totals) {
@@ -323,18 +352,8 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
         solve(scheduler, filter, report);
         ++report.newton_iterations;
         timer.add_to(totals.seconds_solve);
-        bool decreased = false;
-        double length = 1;
-        for (int halving = 0; halving < 12 && !decreased; ++halving, length /= 2) {
-            for (std::size_t i = 0; i < trial_velocity_.size(); ++i) {
-                trial_velocity_[i] = motion.velocity[i] + length * static_cast<double>(change_[i]);
-            }
-            const double trial = incremental_potential(scheduler, trial_velocity_, loads);
-            decreased = trial < potential;
-            if (decreased) potential = trial;
-        }
+        const bool decreased = descend(scheduler, motion, loads, potential, 0);
         if (!decreased) break;
-        motion.velocity = trial_velocity_;
         move(scheduler, motion, h);
         kinetic_ = kinetic;
         elastic_ = elastic;

@@ -79,6 +79,11 @@ class ImplicitStep {
     double incremental_potential(Scheduler& scheduler, std::span<const double> velocity, const BodyLoads& loads);
     double kinetic_energy(Scheduler& scheduler, std::span<const double> velocity);
     double elastic_energy(Scheduler& scheduler, const double* position);
+    /// motion.velocity += the solution of the last solve.
+    void add_change(Scheduler& scheduler, BodyMotion& motion);
+    /// Goes along the solution of the last solve as far as the incremental potential falls by halving the step; false
+    /// if it does not fall, up to `rounding`. `potential` is that of the motion, on entry and on exit.
+    bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
     void move(Scheduler& scheduler, BodyMotion& motion, double factor);
     bool is_finite(Scheduler& scheduler, std::span<const double> nodal);
