@@ -225,10 +225,13 @@ ExitCode body(int argc, const char* const* argv) {
         write_json_file(*options.shared.json, document);
     }
     for (const Row& row : rows) {
-        if (row.job.setting == "accurate" && !(row.errors.t1 && *row.errors.t1 <= accurate_error_percent)) {
-            throw CheckFailed(row.job.label() + " does not reach " + format_number(accurate_error_percent, 3) +
-                              " % at t = 1 s");
-        }
+        if (row.job.setting != "accurate" || (row.errors.t1 && *row.errors.t1 <= accurate_error_percent)) continue;
+        const std::string miss =
+            row.job.label() + " does not reach " + format_number(accurate_error_percent, 3) + " % at t = 1 s";
+        // Any mesh may be too soft for its time step; who asks for accuracy gets a failure, others the row and this
+        // note.
+        if (options.accurate) throw CheckFailed(miss);
+        std::cerr << "note: " << miss << '\n';
     }
     return ExitCode::success;
 }
