@@ -41,6 +41,18 @@ struct AggregatePair {
 
 constexpr int modes = 6;
 
+using SparseFactorBase = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>>;
+
+/// Eigen's factorisation without the matrix that `factorize` allocates and, in the natural order, has no use for.
+class SparseFactor : public SparseFactorBase {
+  public:
+    void factorise_in_place(const Eigen::SparseMatrix<double>& upper) { factorize_preordered<false>(upper); }
+    bool is_finite() const {
+        const auto& values = matrixL().nestedExpression();
+        return Eigen::Map<const Eigen::VectorXd>(values.valuePtr(), values.nonZeros()).allFinite();
+    }
+};
+
 }  // namespace
 
 struct CoarseMatrices {
@@ -61,7 +73,7 @@ struct CoarseMatrices {
     // Sparse: upper triangle, permuted for little fill.
     Eigen::SparseMatrix<double> sparse;
     Eigen::VectorXi place;  ///< [aggregate] its place in the elimination order
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>> factor;
+    SparseFactor factor;
     bool is_dense = true;
     bool is_usable = false;
 };
@@ -167,6 +179,7 @@ CoarseSpace<Real>::CoarseSpace(CoarseSpace&&) noexcept = default;
 template <class Real>
 double CoarseSpace<Real>::change(Scheduler& scheduler, const double* positions) {
     if (!is_fresh_) return std::numeric_limits<double>::infinity();
+    if (change_.empty()) return 0;  // no free node
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         double largest = 0;
         for (std::int32_t a = numbering_->block_aggregate_begin[block];
@@ -223,7 +236,9 @@ void CoarseSpace<Real>::set_modes(const double* positions, int block) {
         basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
         Eigen::SelfAdjointEigenSolver<Matrix3> axes;
         axes.computeDirect(inertia);
-        const double rank_limit = 1e-8 * axes.eigenvalues().maxCoeff();
+        // Offsets below the rounding of the positions are no extent at all.
+        const double rounding = 64 * std::numeric_limits<double>::epsilon() * centre.cwiseAbs().maxCoeff();
+        const double rank_limit = std::max(1e-8 * axes.eigenvalues().maxCoeff(), count * rounding * rounding);
         for (int k = 0; k < 3; ++k) {
             const double moment = axes.eigenvalues()[k];
             if (moment > rank_limit && moment > 0 && std::isfinite(moment)) {
@@ -367,7 +382,8 @@ bool CoarseSpace<Real>::factorise() {
         if (!m.is_usable) return false;
         m.inverse.setIdentity();
         llt.solveInPlace(m.inverse);
-        return true;
+        m.is_usable = m.inverse.allFinite();  // a pivot that is not a number passes for a positive one
+        return m.is_usable;
     }
     for (int column = 0; column < m.sparse.outerSize(); ++column) {
         for (Eigen::SparseMatrix<double>::InnerIterator it(m.sparse, column); it; ++it) it.valueRef() = 0;
@@ -394,8 +410,8 @@ bool CoarseSpace<Real>::factorise() {
             }
         }
     }
-    m.factor.factorize(m.sparse);
-    m.is_usable = m.factor.info() == Eigen::Success;
+    m.factor.factorise_in_place(m.sparse);
+    m.is_usable = m.factor.info() == Eigen::Success && m.factor.is_finite();
     return m.is_usable;
 }
 
