@@ -44,7 +44,6 @@ void visit_contributions(RowContent content, std::span<const Tetrahedron> tetrah
                 const std::int32_t column = numbering.internal_of_user[tetrahedra[e][static_cast<std::size_t>(j)]];
                 if (content == RowContent::upper_edges && column <= row) continue;
                 if (content == RowContent::diagonal && column != row) continue;
-                if (content == RowContent::full_rows && !numbering.is_free(column)) continue;
                 visit(row, Contribution{column, 4 * slot_of_element[e] + i, 4 * slot_of_element[e] + j});
             }
         }

@@ -13,7 +13,7 @@ namespace lancet::kernels {
 /// Which 3 x 3 blocks of the matrix a pattern holds.
 enum class RowContent {
     upper_edges,  ///< one block per edge of the mesh graph, in the row of its first node
-    full_rows,    ///< every block, the diagonal one first
+    full_rows,    ///< every block, the diagonal one first, and those of fixed nodes
     diagonal      ///< the diagonal blocks alone
 };
 

@@ -33,9 +33,8 @@ class RowPatterns : public ::testing::TestWithParam<std::tuple<ScatterStrategy, 
                 for (std::int32_t j = 0; j < 4; ++j) {
                     const std::int32_t row = numbering.internal_of_user[solid.tetrahedra[e][i]];
                     const std::int32_t column = numbering.internal_of_user[solid.tetrahedra[e][j]];
-                    const bool wanted = content == RowContent::upper_edges ? row < column
-                                        : content == RowContent::diagonal  ? row == column
-                                                                           : numbering.is_free(column);
+                    const bool wanted = content == RowContent::full_rows ||
+                                        (content == RowContent::diagonal ? row == column : row < column);
                     if (!numbering.is_free(row) || !wanted) continue;
                     const std::int32_t slot = batches.slot_of_element[e];
                     blocks[{row, column}].insert({4 * slot + i, 4 * slot + j});
