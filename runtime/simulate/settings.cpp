@@ -42,6 +42,9 @@ void validate(const Settings& settings) {
     require(settings.newton_iterations >= 1, "at least one Newton iteration is needed");
     require(settings.newton_tolerance > 0, "the Newton tolerance must be positive");
     require(settings.coarse_change >= 0, "the change that refreshes the coarse space must not be negative");
+    require(settings.safeguard_iterations >= 1, "the energy safeguard needs at least one iteration");
+    require(settings.numbering.nodes_per_block >= 0 && settings.numbering.nodes_per_aggregate >= 0,
+            "numbers of nodes per block and per aggregate must not be negative");
     const bool iterated = settings.newton_iterations > 1 || settings.energy_safeguard ||
                           settings.integrator == Integrator::implicit_midpoint;
     require(!iterated || settings.rotation_interval == 1,
