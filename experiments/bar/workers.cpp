@@ -60,7 +60,7 @@ WorkerReport run_worker(const Job& job, const ProblemOptions& problem, const std
     if (!result.succeeded()) {
         throw Error(job.label() + ": the worker ended with " + describe(result.end) + ", expected exit code 0");
     }
-    const WorkerReport report = report_from_line(result.output, job.label());
+    WorkerReport report = report_from_line(result.output, job.label());
     if (!snapshot_times.empty()) snapshots = read_snapshots(file, snapshot_times.size(), nodes);
     return report;
 }
