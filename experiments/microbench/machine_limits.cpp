@@ -1,7 +1,6 @@
 #include "lancet/experiments/microbench/machine_limits.hpp"
 
 #include <algorithm>
-#include <bit>
 
 #include <benchmark/benchmark.h>
 
@@ -32,7 +31,7 @@ template double MachineLimits::peak_gflops<double>(kernels::InstructionSet);
 
 double MachineLimits::read_gbytes_per_s(double bytes) {
     constexpr std::size_t least = 4096;
-    const std::size_t working_set = std::bit_ceil(std::max(static_cast<std::size_t>(bytes), least));
+    const std::size_t working_set = std::max(static_cast<std::size_t>(bytes), least);
     const auto found = bandwidths_.find(working_set);
     if (found != bandwidths_.end()) return found->second;
     constexpr int repetitions = 5;

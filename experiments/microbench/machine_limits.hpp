@@ -25,7 +25,7 @@ class MachineLimits {
   private:
     runtime::Scheduler* scheduler_;
     std::map<std::pair<std::size_t, kernels::InstructionSet>, double> peaks_;  ///< by size of the scalar
-    std::map<std::size_t, double> bandwidths_;                                 ///< by bytes, a power of two
+    std::map<std::size_t, double> bandwidths_;                                 ///< by bytes
 };
 
 }  // namespace lancet::experiments

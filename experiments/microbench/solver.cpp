@@ -212,7 +212,7 @@ void register_all(Subject subject) {
 }  // namespace
 
 std::shared_ptr<Samples> register_solver(const std::vector<std::array<int, 3>>& cells) {
-    const auto samples = std::make_shared<Samples>(cells);
+    auto samples = std::make_shared<Samples>(cells);
     for (const auto& one : cells) {
         for (const kernels::InstructionSet set : instruction_sets_to_measure()) {
             const Subject subject{samples, elements_of(one), set, OperatorKind::edge_blocks};
