@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lancet/runtime/integrate/consistent_mass.hpp"
 #include "lancet/runtime/simulate/body.hpp"
 #include "lancet/runtime/solve/conjugate_gradients.hpp"
 
@@ -74,6 +75,7 @@ class ImplicitStep {
                          const ConstraintFilter& filter, StepReport& report, StepTotals& totals);
     void safeguard(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
                    std::span<const double> before_hold, StepReport& report, StepTotals& totals);
+    /// What the step gained in energy beyond the work of loads and holds, less what rounding explains.
     double growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                   std::span<const double> before_hold);
     double incremental_potential(Scheduler& scheduler, std::span<const double> velocity, const BodyLoads& loads);
@@ -86,6 +88,11 @@ class ImplicitStep {
     bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
     void move(Scheduler& scheduler, BodyMotion& motion, double factor);
+    /// A component of M v at a free node; value(node) is that component of v.
+    template <class Value>
+    double inertia(std::size_t node, const Value& value) const;
+    /// Scales the velocities by `share` where no hold prescribes them.
+    void slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter, double share);
     bool is_finite(Scheduler& scheduler, std::span<const double> nodal);
     template <class Function>
     double sum_over_nodes(Scheduler& scheduler, const Function& value);
@@ -93,7 +100,8 @@ class ImplicitStep {
     ElasticElements<Real>* elements_;
     const kernels::NodeNumbering* numbering_;
     Settings settings_;
-    std::vector<double> mass_;
+    std::vector<double> mass_;  ///< row sums, [node]
+    ConsistentMass consistent_mass_;
     std::unique_ptr<Operator<Real>> matrix_;
     std::unique_ptr<Preconditioner<Real>> preconditioner_;
     ConjugateGradients<Real, Accumulate> conjugate_gradients_;

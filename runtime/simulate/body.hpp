@@ -67,7 +67,7 @@ class BodyState {
 ///     (M + dt D + dt^2 K(x^)) dv = dt (f_int(x^) + f_ext) - dt D v_n,  v_n+1 = v_n + dv,  x_n+1 = x^ + dt dv,
 /// and goes on from there with Newton iterations if asked for. If the energy then exceeds what it was plus the work of
 /// loads and holds, the step is repeated from the new state with a line search on the incremental potential
-/// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads.
+/// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads, and slowed down if that does not bring the energy down.
 class DeformableBody {
   public:
     virtual ~DeformableBody() = default;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lancet/kernels/layout/element_batches.hpp"
+
+namespace lancet::runtime {
+
+/// What a consistent mass has beside its row sums: (M v)_i = m_i v_i + sum_j m_ij (v_j - v_i), with m_i the row sum and
+/// m_ij = rho V / 20 summed over the elements that hold both nodes. In double, gathered row by row: for the inertia of
+/// a step; the matrix of the linear system has it in its operator. An empty one stands for a lumped mass.
+class ConsistentMass {
+  public:
+    ConsistentMass() = default;
+    /// - batches: with the mass of each element; tetrahedra: of the mesh, in the user's numbering
+    template <class Real>
+    ConsistentMass(const kernels::ElementBatches<Real>& batches, std::span<const kernels::Tetrahedron> tetrahedra,
+                   const kernels::NodeNumbering& numbering);
+
+    bool empty() const noexcept { return begin_.empty(); }
+
+    /// sum_j m_ij (value(j) - value(node)) for a free node, where value(j) is a component of the nodal vector at node
+    /// j.
+    template <class Value>
+    double off_diagonal(std::size_t node, const Value& value) const {
+        const double own = value(node);
+        double sum = 0;
+        for (std::int32_t k = begin_[node]; k < begin_[node + 1]; ++k) {
+            sum += mass_[k] * (value(static_cast<std::size_t>(column_[k])) - own);
+        }
+        return sum;
+    }
+
+    std::size_t bytes() const noexcept;
+
+  private:
+    std::vector<std::int32_t> begin_;   ///< first entry of each free node, and the end
+    std::vector<std::int32_t> column_;  ///< node of each entry, internal numbering
+    std::vector<double> mass_;          ///< m_ij of each entry, kilograms
+};
+
+}  // namespace lancet::runtime
