@@ -249,7 +249,9 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         if (iterates) {
             // Where no step along the direction descends, the iterate is as good as the scalar type allows.
             if (iteration == 0) potential = incremental_potential(scheduler, motion.velocity, loads);
-            const double rounding = 64 * std::numeric_limits<Real>::epsilon() * std::abs(potential);
+            // Rounding of the scalar, and of the positions: small strains are differences of large coordinates.
+            const double rounding =
+                std::max(64 * static_cast<double>(std::numeric_limits<Real>::epsilon()), 1e-10) * std::abs(potential);
             const bool descended = descend(scheduler, motion, loads, potential, rounding);
             timer.add_to(totals.seconds_forces);
             ++report.newton_iterations;
