@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lancet/experiments/bar/errors.hpp"
+#include "lancet/experiments/bar/limits.hpp"
 #include "lancet/experiments/bar/pictures.hpp"
 #include "lancet/experiments/bar/problem.hpp"
 #include "lancet/experiments/bar/reference.hpp"
@@ -22,6 +23,7 @@
 #include "lancet/experiments/common/process.hpp"
 #include "lancet/experiments/common/progress.hpp"
 #include "lancet/kernels/error.hpp"
+#include "lancet/kernels/isa/instruction_set.hpp"
 #include "lancet/runtime/observe/machine_stamp.hpp"
 #include "lancet/runtime/observe/machine_stamp_json.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
@@ -162,10 +164,14 @@ std::vector<int> measured_threads() {
     return all > 1 ? std::vector<int>{1, all} : std::vector<int>{1};
 }
 
-nlohmann::ordered_json machine(const Options& options) {
+nlohmann::ordered_json machine(const Options& options, const MachineLimits& limits) {
     const int threads = options.shared.threads.empty() ? 1 : options.shared.threads.back();
     nlohmann::ordered_json json = runtime::machine_stamp("see rows", runtime::default_scheduler, threads);
     json["worker_omp_wait_policy"] = worker_wait_policy;
+    json["one_thread_limits"] = {{"peak_gflops_float", limits.peak_gflops_float},
+                                 {"peak_gflops_double", limits.peak_gflops_double},
+                                 {"memory_gbytes_per_s", limits.memory_gbytes_per_s},
+                                 {"cache_gbytes_per_s", limits.cache_gbytes_per_s}};
     return json;
 }
 
@@ -176,7 +182,8 @@ ExitCode body(int argc, const char* const* argv) {
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
     if (options.shared.quick) make_quick(options, app);
     if (options.accurate && options.no_errors) throw Error("--accurate and --no-errors: found both, expected one");
-    const auto stamp = machine(options);
+    const MachineLimits limits = measure_limits();
+    const auto stamp = machine(options, limits);
 
     const Problem problem = make_problem(options.problem);
     for (const std::string& note : problem.notes) std::cerr << options.problem.mesh << ": " << note << '\n';
@@ -216,6 +223,11 @@ ExitCode body(int argc, const char* const* argv) {
     progress.clear();
 
     table.print(std::cout);
+    std::cout << "\nOne thread of this machine (" << kernels::to_string(kernels::active_instruction_set())
+              << ") reaches " << format_number(limits.peak_gflops_float, 3) << " GFLOP/s in float, "
+              << format_number(limits.peak_gflops_double, 3) << " in double, and reads "
+              << format_number(limits.cache_gbytes_per_s, 3) << " GB/s from cache, "
+              << format_number(limits.memory_gbytes_per_s, 3) << " from memory.\n";
     if (options.shared.csv) table.write_csv(*options.shared.csv);
     if (options.shared.json) {
         nlohmann::ordered_json document;
