@@ -74,8 +74,8 @@ std::vector<std::vector<double>> converged(ProblemOptions options, const std::ve
     if (std::filesystem::exists(file)) return read_snapshots(file, times.size(), nodes);
 
     progress.show("computing the " + what + ", kept in " + file.string());
-    // Lancet in double with every step solved; the baseline `eigen`, which shares nothing with it but the mesh, comes to
-    // the same positions to 2e-10 m on the Bar at t = 1 s and takes nine times as long.
+    // Lancet in double with every step solved; the baseline `eigen`, which shares nothing with it but the mesh, comes
+    // to the same positions to 2e-10 m on the Bar at t = 1 s and takes nine times as long.
     const Job job{"lancet",
                   "reference",
                   places.folder / "bar_lancet",

@@ -105,13 +105,25 @@ struct Pack {
 #endif
         return {a.value / b.value};
     }
-    LANCET_INLINE friend Pack operator-(Pack a) { return {-a.value}; }
+    LANCET_INLINE friend Pack operator-(Pack a) {
+        return {-a.value};
+    }
 
-    LANCET_INLINE friend Mask<Isa, Real> operator<(Pack a, Pack b) { return {a.value < b.value}; }
-    LANCET_INLINE friend Mask<Isa, Real> operator<=(Pack a, Pack b) { return {a.value <= b.value}; }
-    LANCET_INLINE friend Mask<Isa, Real> operator>(Pack a, Pack b) { return {a.value > b.value}; }
-    LANCET_INLINE friend Mask<Isa, Real> operator>=(Pack a, Pack b) { return {a.value >= b.value}; }
-    LANCET_INLINE friend Mask<Isa, Real> operator==(Pack a, Pack b) { return {a.value == b.value}; }
+    LANCET_INLINE friend Mask<Isa, Real> operator<(Pack a, Pack b) {
+        return {a.value < b.value};
+    }
+    LANCET_INLINE friend Mask<Isa, Real> operator<=(Pack a, Pack b) {
+        return {a.value <= b.value};
+    }
+    LANCET_INLINE friend Mask<Isa, Real> operator>(Pack a, Pack b) {
+        return {a.value > b.value};
+    }
+    LANCET_INLINE friend Mask<Isa, Real> operator>=(Pack a, Pack b) {
+        return {a.value >= b.value};
+    }
+    LANCET_INLINE friend Mask<Isa, Real> operator==(Pack a, Pack b) {
+        return {a.value == b.value};
+    }
 
     /// a b + c, rounded once where the instruction set can, twice where it cannot.
     LANCET_INLINE friend Pack fma(Pack a, Pack b, Pack c) {
