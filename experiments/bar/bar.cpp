@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "lancet/experiments/bar/errors.hpp"
-#include "lancet/experiments/bar/limits.hpp"
 #include "lancet/experiments/bar/pictures.hpp"
 #include "lancet/experiments/bar/problem.hpp"
 #include "lancet/experiments/bar/reference.hpp"
@@ -18,6 +17,7 @@
 #include "lancet/experiments/bar/settings.hpp"
 #include "lancet/experiments/bar/workers.hpp"
 #include "lancet/experiments/common/file.hpp"
+#include "lancet/experiments/common/machine_limits.hpp"
 #include "lancet/experiments/common/main.hpp"
 #include "lancet/experiments/common/options.hpp"
 #include "lancet/experiments/common/process.hpp"
@@ -164,10 +164,27 @@ std::vector<int> measured_threads() {
     return all > 1 ? std::vector<int>{1, all} : std::vector<int>{1};
 }
 
-nlohmann::ordered_json machine(const Options& options, const MachineLimits& limits) {
+/// What one thread can do at most: what GFLOP/s and GB/s are to be compared with.
+struct OneThread {
+    double peak_gflops_float;  ///< multiply-adds of the active instruction set
+    double peak_gflops_double;
+    double memory_gbytes_per_s;  ///< reading 256 MiB
+    double cache_gbytes_per_s;   ///< reading 1 MiB
+};
+
+OneThread measure_one_thread() {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    MachineLimits limits(*scheduler);
+    constexpr double mebibyte = 1 << 20;
+    return {.peak_gflops_float = limits.peak_gflops<float>(kernels::active_instruction_set()),
+            .peak_gflops_double = limits.peak_gflops<double>(kernels::active_instruction_set()),
+            .memory_gbytes_per_s = limits.read_gbytes_per_s(256 * mebibyte),
+            .cache_gbytes_per_s = limits.read_gbytes_per_s(mebibyte)};
+}
+
+nlohmann::ordered_json machine(const Options& options, const OneThread& limits) {
     const int threads = options.shared.threads.empty() ? 1 : options.shared.threads.back();
     nlohmann::ordered_json json = runtime::machine_stamp("see rows", runtime::default_scheduler, threads);
-    json["worker_omp_wait_policy"] = worker_wait_policy;
     json["one_thread_limits"] = {{"peak_gflops_float", limits.peak_gflops_float},
                                  {"peak_gflops_double", limits.peak_gflops_double},
                                  {"memory_gbytes_per_s", limits.memory_gbytes_per_s},
@@ -182,7 +199,7 @@ ExitCode body(int argc, const char* const* argv) {
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
     if (options.shared.quick) make_quick(options, app);
     if (options.accurate && options.no_errors) throw Error("--accurate and --no-errors: found both, expected one");
-    const MachineLimits limits = measure_limits();
+    const OneThread limits = measure_one_thread();
     const auto stamp = machine(options, limits);
 
     const Problem problem = make_problem(options.problem);

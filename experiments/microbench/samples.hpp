@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "lancet/experiments/microbench/machine_limits.hpp"
+#include "lancet/experiments/common/machine_limits.hpp"
 #include "lancet/experiments/microbench/reference.hpp"
 #include "lancet/experiments/microbench/solver_parts.hpp"
 
