@@ -51,16 +51,22 @@ Job search(const Entry& entry, const Choice& choice, std::size_t variation, cons
     std::optional<Trial> least_wrong;
     for (const auto& sequence : entry.sequences) {
         std::optional<Trial> end;
+        std::size_t end_at = sequence.size();
         for (std::size_t first = 0, last = sequence.size(); first < last;) {
             const std::size_t middle = first + (last - first) / 2;
             const Trial trial = attempt(sequence[middle]);
             if (!least_wrong || trial.error < least_wrong->error) least_wrong = trial;
             if (reaches(trial)) {
                 end = trial;
-                last = middle;
+                end_at = last = middle;
             } else {
                 first = middle + 1;
             }
+        }
+        // Errors fall with the effort, but not at every step: one or two settings below the first may do as well.
+        for (std::size_t below = 1; end && below <= 2 && below <= end_at; ++below) {
+            const Trial trial = attempt(sequence[end_at - below]);
+            if (reaches(trial)) end = trial;
         }
         if (end) ends.push_back(end->job);
     }

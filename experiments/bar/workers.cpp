@@ -55,7 +55,6 @@ WorkerReport run_worker(const Job& job, const ProblemOptions& problem, const std
         command.arguments.push_back("--snapshots=" + file.string());
         command.arguments.push_back("--snapshot-times=" + join(snapshot_times));
     }
-    command.environment = {{"OMP_WAIT_POLICY", worker_wait_policy}};
     const ProcessResult result = run_process(command);
     if (!result.succeeded()) {
         throw Error(job.label() + ": the worker ended with " + describe(result.end) + ", expected exit code 0");

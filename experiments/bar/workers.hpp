@@ -11,9 +11,6 @@
 
 namespace lancet::experiments::bar {
 
-/// The value of OMP_WAIT_POLICY in every worker: threads that spin would take the processors from other processes.
-constexpr const char* worker_wait_policy = "passive";
-
 /// What one job gave.
 struct JobResult {
     std::vector<WorkerReport> reports;           ///< one per repetition

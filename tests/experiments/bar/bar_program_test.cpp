@@ -51,7 +51,7 @@ TEST(BarProgram, MeasuresWritesAndKeepsItsReference) {
     EXPECT_THAT(first.output, testing::HasSubstr("thesis"));
     const auto json = nlohmann::json::parse(std::ifstream(json_file));
     EXPECT_TRUE(json.at("machine").contains("cpu_model"));
-    EXPECT_EQ(json.at("machine").at("worker_omp_wait_policy"), "passive");
+    EXPECT_TRUE(json.at("machine").contains("omp_wait_policy"));
     ASSERT_EQ(json.at("rows").size(), 16u);  // two methods, four settings, two scalar types
     std::set<std::string> settings;
     for (const auto& row : json.at("rows")) {
