@@ -104,6 +104,36 @@ LANCET_INLINE Corners<P> load_gradient_corners(const typename P::Real* source) {
     return b;
 }
 
+/// x_j - x_0 of a batch.
+template <class P>
+LANCET_INLINE Corners<P> load_corner_differences(const TetrahedronArguments<typename P::Real>& a, std::int64_t batch) {
+    const std::int32_t* nodes = a.nodes + batch * 4 * P::width;
+    Corners<P> d;
+    for (int j = 0; j < 3; ++j) d.of[j] = load_differences<P>(a.positions, nodes + (j + 1) * P::width, nodes);
+    return d;
+}
+
+/// The energy of the batches [first, first + count) and nothing else: it needs neither the rotated gradients nor a
+/// rotation to the last digit.
+template <class P, RotationMethod method, int count>
+LANCET_INLINE void energy_together(const TetrahedronArguments<typename P::Real>& a, std::int64_t first, P& energy) {
+    constexpr int W = P::width;
+    constexpr int entries = ElementBatches<typename P::Real>::rest_entries;
+    Matrix3<P> deformation[count];
+    Quaternion<P> q[count];
+    for (int k = 0; k < count; ++k) {
+        const Corners<P> b = load_corners<P>(a.rest + (first + k) * entries * W);
+        deformation[k] = gradient(load_corner_differences<P>(a, first + k), b);
+        q[k] = load_quaternion<P>(a.quaternion + (first + k) * 4 * W);
+    }
+    nearest_rotations_for_energy<method>(deformation, q, a.rotation_steps);
+    for (int k = 0; k < count; ++k) {
+        store_quaternion(a.quaternion + (first + k) * 4 * W, q[k]);
+        const typename P::Real* rest = a.rest + (first + k) * entries * W;
+        energy += corotational_energy(deformation[k], to_matrix(q[k]), P::load(rest + 9 * W), P::load(rest + 10 * W));
+    }
+}
+
 /// Rotated gradients, force and energy of the batches [first, first + count), which are rotated together. The rotation
 /// method is a constant of the compilation; with UpdateRotation false the gradients that are stored are read instead.
 template <class P, bool UpdateRotation, RotationMethod method, int count>
@@ -112,10 +142,7 @@ LANCET_INLINE void elastic_together(const TetrahedronArguments<typename P::Real>
     constexpr int W = P::width;
     const bool in_batches = a.layout == GradientLayout::batches;
     Corners<P> d[count], b[count];
-    for (int k = 0; k < count; ++k) {
-        const std::int32_t* nodes = a.nodes + (first + k) * 4 * W;
-        for (int j = 0; j < 3; ++j) d[k].of[j] = load_differences<P>(a.positions, nodes + (j + 1) * W, nodes);
-    }
+    for (int k = 0; k < count; ++k) d[k] = load_corner_differences<P>(a, first + k);
     if constexpr (UpdateRotation) {
         Matrix3<P> deformation[count];
         Quaternion<P> q[count];
@@ -169,6 +196,12 @@ void elastic_loop(const TetrahedronArguments<typename P::Real>& a, int block) {
     P energy(typename P::Real(0));
     std::int64_t batch = a.block_batch_begin[block];
     const std::int64_t end = a.block_batch_begin[block + 1];
+    if constexpr (UpdateRotation) {
+        if (a.energy != nullptr && a.force == nullptr && a.rotated == nullptr) {
+            for (; batch + together <= end; batch += together) energy_together<P, method, together>(a, batch, energy);
+            for (; batch < end; ++batch) energy_together<P, method, 1>(a, batch, energy);
+        }
+    }
     for (; batch + together <= end; batch += together) {
         elastic_together<P, UpdateRotation, method, together>(a, batch, energy);
     }

@@ -5,6 +5,7 @@
 #include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
 #include "lancet/kernels/isa/instances.hpp"
 #include "lancet/kernels/operator/coarse_kernels_simd.hpp"
+#include "lancet/kernels/operator/diagonal_kernels_simd.hpp"
 #include "lancet/kernels/operator/operator_kernels_simd.hpp"
 #include "lancet/kernels/peak/peak_kernels_simd.hpp"
 #include "lancet/kernels/rotation/rotation_kernels_simd.hpp"

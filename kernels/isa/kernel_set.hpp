@@ -3,6 +3,7 @@
 #include "lancet/kernels/element/tetrahedron_kernels.hpp"
 #include "lancet/kernels/isa/instruction_set.hpp"
 #include "lancet/kernels/operator/coarse_kernels.hpp"
+#include "lancet/kernels/operator/diagonal_kernels.hpp"
 #include "lancet/kernels/operator/operator_kernels.hpp"
 #include "lancet/kernels/peak/peak_kernels.hpp"
 #include "lancet/kernels/rotation/rotation_kernels.hpp"

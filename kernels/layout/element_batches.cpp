@@ -99,10 +99,10 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                 if (!is_padding) batches.slot_of_element[e] = static_cast<std::int32_t>(batch * lanes + lane);
                 for (std::size_t corner = 0; corner < 4; ++corner) {
                     const std::int32_t node = numbering.internal_of_user[tetrahedra[e][corner]];
-                    batches.nodes[(batch * 4 + corner) * lanes + lane] = node;
+                    batches.nodes[(batch * 4 + corner) * lanes + lane] = 4 * node;
                     batches.targets[(batch * 4 + corner) * lanes + lane] =
-                        is_padding ? batches.scatter.unused(static_cast<int>(block))
-                                   : batches.scatter.target(static_cast<int>(block), node);
+                        4 * (is_padding ? batches.scatter.unused(static_cast<int>(block))
+                                        : batches.scatter.target(static_cast<int>(block), node));
                 }
                 Real* rest = &batches.rest[batch * ElementBatches<Real>::rest_entries * lanes + lane];
                 for (std::size_t entry = 0; entry < 9; ++entry) {

@@ -28,8 +28,8 @@ struct ElementBatches {
 
     int width = 1;
     std::vector<std::int32_t> block_batch_begin;  ///< first batch of each block, and the end
-    AlignedVector<std::int32_t> nodes;            ///< [batch][corner][lane]
-    AlignedVector<std::int32_t> targets;          ///< [batch][corner][lane], into the buffer of `scatter`
+    AlignedVector<std::int32_t> nodes;            ///< [batch][corner][lane] 4 * node, its place in a nodal vector
+    AlignedVector<std::int32_t> targets;          ///< [batch][corner][lane] 4 * target in the buffer of `scatter`
     AlignedVector<Real> rest;                     ///< [batch][entry][lane]
     AlignedVector<Real> mass;                     ///< [batch][lane] rho V, zero in padding
     std::vector<std::int32_t> slot_of_element;    ///< batch * width + lane of each element of the mesh

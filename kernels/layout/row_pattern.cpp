@@ -43,7 +43,6 @@ void visit_contributions(RowContent content, std::span<const Tetrahedron> tetrah
             for (std::int32_t j = 0; j < 4; ++j) {
                 const std::int32_t column = numbering.internal_of_user[tetrahedra[e][static_cast<std::size_t>(j)]];
                 if (content == RowContent::upper_edges && column <= row) continue;
-                if (content == RowContent::diagonal && column != row) continue;
                 visit(row, Contribution{column, 4 * slot_of_element[e] + i, 4 * slot_of_element[e] + j});
             }
         }
@@ -141,21 +140,17 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
         std::vector<std::int32_t> order(
             static_cast<std::size_t>(numbering.block_begin[block + 1] - numbering.block_begin[block]));
         std::iota(order.begin(), order.end(), numbering.block_begin[block]);
-        // By length, and then by contributions: where every row has one block (the diagonal) these still differ.
-        std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
-            return length[a] != length[b] ? length[a] > length[b]
-                                          : contributions.row(a).size() > contributions.row(b).size();
-        });
-        if (content != RowContent::diagonal) spread_lanes(order, length, lanes);
+        std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return length[a] > length[b]; });
+        spread_lanes(order, length, lanes);
 
         for (std::size_t first = 0; first < order.size(); first += lanes) {
             std::size_t entries = 0;
             for (std::size_t lane = 0; lane < lanes; ++lane) {
                 const bool is_padding = first + lane >= order.size();
                 const std::int32_t row = is_padding ? order[first] : order[first + lane];
-                pattern.row.push_back(row);
+                pattern.row.push_back(4 * row);
                 // A row's own sum is stored by its block; where every contribution has a slot, it needs none.
-                pattern.row_target.push_back(is_padding && is_half ? pattern.scatter.unused(block) : row);
+                pattern.row_target.push_back(4 * (is_padding && is_half ? pattern.scatter.unused(block) : row));
                 if (!is_padding) entries = std::max(entries, rows[row].size());
             }
             for (std::size_t entry = 0; entry < entries; ++entry) {
@@ -168,11 +163,11 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
                 for (std::size_t lane = 0; lane < lanes; ++lane) {
                     const Block* stored = block_at(lane);
                     const std::int32_t row = pattern.row[pattern.row.size() - lanes + lane];
-                    pattern.column.push_back(stored != nullptr ? stored->column : row);
+                    pattern.column.push_back(stored != nullptr ? 4 * stored->column : row);
                     if (is_half) {
-                        pattern.column_target.push_back(stored != nullptr
-                                                            ? pattern.scatter.target(block, stored->column)
-                                                            : pattern.scatter.unused(block));
+                        pattern.column_target.push_back(4 * (stored != nullptr
+                                                                 ? pattern.scatter.target(block, stored->column)
+                                                                 : pattern.scatter.unused(block)));
                     }
                     if (stored != nullptr) {
                         incidences = std::max(incidences, static_cast<std::size_t>(stored->end - stored->begin));
@@ -188,7 +183,7 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
                                     contributions.row(order[first + lane])[static_cast<std::size_t>(stored->begin) + k];
                                 corner = of_column ? c.column_corner : c.row_corner;
                             }
-                            pattern.incidence.push_back(corner);
+                            pattern.incidence.push_back(4 * corner);
                         }
                     }
                 }

@@ -13,8 +13,7 @@ namespace lancet::kernels {
 /// Which 3 x 3 blocks of the matrix a pattern holds.
 enum class RowContent {
     upper_edges,  ///< one block per edge of the mesh graph, in the row of its first node
-    full_rows,    ///< every block, the diagonal one first, and those of fixed nodes
-    diagonal      ///< the diagonal blocks alone
+    full_rows     ///< every block, the diagonal one first, and those of fixed nodes
 };
 
 /// The rows of the free nodes in sliced ELLPACK order: `width` rows of similar length form a chunk, entry k of a chunk
@@ -25,15 +24,16 @@ struct RowPattern {
     RowContent content = RowContent::upper_edges;
     std::vector<std::int32_t> block_chunk_begin;  ///< first chunk of each block, and the end
     std::vector<std::int32_t> chunk_entry_begin;  ///< first entry of each chunk, and the end
-    AlignedVector<std::int32_t> row;              ///< [chunk][lane] node
-    AlignedVector<std::int32_t> row_target;       ///< [chunk][lane] place of the row's own sum
-    AlignedVector<std::int32_t> column;           ///< [entry][lane] node
-    AlignedVector<std::int32_t> column_target;    ///< [entry][lane] place of the transposed product (upper_edges only)
-    std::vector<std::int32_t> incidence_begin;    ///< first incidence of each entry, and the end
-    AlignedVector<std::int32_t> incidence;        ///< [incidence][2][lane] 4 * slot + corner of the row's and the
-                                                  ///< column's node; 4 * slots stands for 'nothing'
-    ScatterPlan scatter;                          ///< upper_edges only
-    std::int64_t blocks_stored = 0;               ///< 3 x 3 blocks without padding
+    AlignedVector<std::int32_t> row;              ///< [chunk][lane] 4 * node, its place in a nodal vector
+    AlignedVector<std::int32_t> row_target;       ///< [chunk][lane] 4 * target of the row's own sum
+    AlignedVector<std::int32_t> column;           ///< [entry][lane] 4 * node
+    AlignedVector<std::int32_t>
+        column_target;  ///< [entry][lane] 4 * target of the transposed product (upper_edges only)
+    std::vector<std::int32_t> incidence_begin;  ///< first incidence of each entry, and the end
+    AlignedVector<std::int32_t> incidence;      ///< [incidence][2][lane] 4 * (4 * slot + corner) of the row's and the
+                                                ///< column's node; 16 * slots stands for 'nothing'
+    ScatterPlan scatter;                        ///< upper_edges only
+    std::int64_t blocks_stored = 0;             ///< 3 x 3 blocks without padding
 
     int chunks() const noexcept { return block_chunk_begin.back(); }
     int entries() const noexcept { return chunk_entry_begin.back(); }

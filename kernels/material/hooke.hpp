@@ -32,6 +32,23 @@ LANCET_INLINE P hooke_energy(const Matrix3<P>& g, const Symmetric3<P>& s) {
     return P(typename P::Real(0.5)) * energy;
 }
 
+/// The same energy density for G = F R^T - 1 without the product: |G| = |F - R|, and where R is the rotation of F,
+/// F R^T is symmetric: |F - R|^2 + (lambda / mu) tr(R^T F - 1)^2 / 2. `root` is a common factor of F and of the
+/// result's root.
+template <class P>
+LANCET_INLINE P corotational_energy(const Matrix3<P>& f, const Matrix3<P>& r, P root, P lambda_over_mu) {
+    P square(typename P::Real(0)), trace(typename P::Real(0));
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            // r . (f - r) sums to tr(R^T F) - 3, without the cancellation.
+            const P difference = root * (f.entry[i][j] - r.entry[i][j]);
+            square = fma(difference, difference, square);
+            trace = fma(r.entry[i][j], difference, trace);
+        }
+    }
+    return fma(P(typename P::Real(0.5)) * lambda_over_mu, trace * trace, square);
+}
+
 template <class P>
 LANCET_INLINE Vector3<P> multiply(const Symmetric3<P>& s, const Vector3<P>& v) {
     return {fma(s.xx, v.x, fma(s.xy, v.y, s.xz * v.z)), fma(s.xy, v.x, fma(s.yy, v.y, s.yz * v.z)),

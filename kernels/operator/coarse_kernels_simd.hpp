@@ -47,7 +47,7 @@ LANCET_INLINE void add_coarse_chunk(const CoarseDiagonalArguments<typename P::Re
         const std::int32_t* column = a.column + entry * W;
         Real inside[W];
         for (int lane = 0; lane < W; ++lane) {
-            inside[lane] = a.aggregate[column[lane]] == aggregates[lane] ? Real(1) : Real(0);
+            inside[lane] = a.aggregate[column[lane] / 4] == aggregates[lane] ? Real(1) : Real(0);
         }
         const P weight = P::load(inside);
         const Vector3<P> rj = load_nodes<P>(a.offset, column);
@@ -94,7 +94,7 @@ void coarse_diagonal(const CoarseDiagonalArguments<typename P::Real>& a, int blo
         std::int32_t aggregates[W];
         bool is_uniform = true;
         for (int lane = 0; lane < W; ++lane) {
-            aggregates[lane] = a.aggregate[a.row[chunk * W + lane]];
+            aggregates[lane] = a.aggregate[a.row[chunk * W + lane] / 4];
             is_uniform = is_uniform && aggregates[lane] == aggregates[0];
         }
         if (!is_uniform) {

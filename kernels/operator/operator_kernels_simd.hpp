@@ -173,7 +173,7 @@ LANCET_INLINE CornerGradients<P> load_gradients(const AssemblyArguments<typename
     if constexpr (!InBatches) {
         Quad<typename P::Isa, Real> quads[W];
         for (int lane = 0; lane < W; ++lane) {
-            quads[lane] = Quad<typename P::Isa, Real>::load(a.rotated + 4 * static_cast<std::int64_t>(corners[lane]));
+            quads[lane] = Quad<typename P::Isa, Real>::load(a.rotated + static_cast<std::int64_t>(corners[lane]));
         }
         P c[4];
         transpose(quads, c);
@@ -181,8 +181,8 @@ LANCET_INLINE CornerGradients<P> load_gradients(const AssemblyArguments<typename
     } else {
         Real lanes[4][W];
         for (int lane = 0; lane < W; ++lane) {
-            const std::int64_t slot = corners[lane] >> 2;
-            const int corner = corners[lane] & 3;
+            const std::int64_t slot = corners[lane] >> 4;
+            const int corner = (corners[lane] >> 2) & 3;
             const Real* b = a.rotated + (slot / W) * 9 * W + slot % W;
             for (int axis = 0; axis < 3; ++axis) {
                 const Real first = b[axis * W], second = b[(3 + axis) * W], third = b[(6 + axis) * W];

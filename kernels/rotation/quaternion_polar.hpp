@@ -83,10 +83,12 @@ LANCET_INLINE P safe_shift(const RotationDerivatives<P>& d) {
 /// to about 117 degrees, and with a floor under |det H|, still ascends unless g lies badly. Else a shifted Hessian
 /// makes it an ascent. What F does not determine (a gap s2 +- s3 below about 64 epsilon s1) hardly moves.
 ///
-/// A lane is converged when H is safely positive definite and the step so short that what it leaves is rounding; as
-/// tr(R^T F) is a quadratic form in the quaternion, every local maximum is the global one.
+/// A lane is converged when H is safely positive definite and the step not longer than `longest`, by default so short
+/// that what it leaves is rounding; as tr(R^T F) is a quadratic form in the quaternion, every local maximum is the
+/// global one.
 template <class P>
-LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternion<P>& start) {
+LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternion<P>& start,
+                                            typename P::Real longest = RotationConstants<P>::cube_root_epsilon) {
     using Real = typename P::Real;
     using Constants = RotationConstants<P>;
     const P zero(Real(0));
@@ -117,8 +119,7 @@ LANCET_INLINE RotationStep<P> rotation_step(const Matrix3<P>& f, const Quaternio
     const P denominator = w.determinant + sqrt(determinant_square + square);
     const P factor = P(Real(1)) / (denominator + P(Constants::tiny));
     const Quaternion<P> turn{P(Real(1)), w.numerator[0] * factor, w.numerator[1] * factor, w.numerator[2] * factor};
-    const P longest(Constants::cube_root_epsilon * Constants::cube_root_epsilon);
-    return {multiply(start, turn), safe & (square <= longest * determinant_square)};
+    return {multiply(start, turn), safe & (square <= P(longest * longest) * determinant_square)};
 }
 
 /// A step less than doubles the length, the Hessian grows with its square and the determinant of that with its sixth

@@ -8,13 +8,15 @@ namespace lancet::kernels {
 /// of the analytic polar decomposition and, while a lane has not converged, up to two more; where any lane still has
 /// not (a bad start, F inverted, flat or of rank one) its batch computes the singular value decomposition, and that
 /// lane takes its rotation. No lane depends on another one. `count` batches together, as in quaternion_rotations.
+/// A last step of the length `longest` and less is the end: what it leaves is its cube.
 template <int count, class P>
-LANCET_INLINE void robust_rotations(const Matrix3<P> (&f)[count], Quaternion<P> (&q)[count], int steps) {
+LANCET_INLINE void robust_rotations(const Matrix3<P> (&f)[count], Quaternion<P> (&q)[count], int steps,
+                                    typename P::Real longest = RotationConstants<P>::cube_root_epsilon) {
     Matrix3<P> scaled[count];
     Mask<typename P::Isa, typename P::Real> converged[count];
     for (int i = 0; i < count; ++i) {
         scaled[i] = prescale(f[i]);
-        const auto first = rotation_step(scaled[i], q[i]);
+        const auto first = rotation_step(scaled[i], q[i], longest);
         q[i] = first.rotation;
         converged[i] = first.converged;
     }
@@ -25,7 +27,7 @@ LANCET_INLINE void robust_rotations(const Matrix3<P> (&f)[count], Quaternion<P> 
             if (all(everywhere)) break;
         }
         for (int i = 0; i < count; ++i) {
-            const auto next = rotation_step(scaled[i], q[i]);
+            const auto next = rotation_step(scaled[i], q[i], longest);
             q[i] = keep_in_range(select(converged[i], q[i], next.rotation), step);
             converged[i] = converged[i] | next.converged;
         }

@@ -36,6 +36,16 @@ LANCET_INLINE void nearest_rotations(const Matrix3<P> (&f)[count], Quaternion<P>
     }
 }
 
+/// The same where the rotations serve for energies alone, which are least at the rotation and so forgive more.
+template <RotationMethod method, int count, class P>
+LANCET_INLINE void nearest_rotations_for_energy(const Matrix3<P> (&f)[count], Quaternion<P> (&q)[count], int steps) {
+    if constexpr (method == RotationMethod::robust) {
+        robust_rotations(f, q, 1, RotationConstants<P>::sixth_root_epsilon);
+    } else {
+        nearest_rotations<method>(f, q, steps);
+    }
+}
+
 /// How many batches a method rotates together.
 template <RotationMethod method>
 constexpr int batches_together = method == RotationMethod::quaternion || method == RotationMethod::robust ? 2 : 1;

@@ -50,21 +50,4 @@ struct VectorKernels {
                                      const ConjugateGradientArguments<Real, Accumulate>& arguments, int block);
 };
 
-/// Inversion of assembled diagonal blocks into the form that the vector kernels apply.
-template <class Real>
-struct DiagonalArguments {
-    const std::int32_t* block_begin;
-    const std::int32_t* block_chunk_begin;  ///< this and the next two: of a RowPattern of content diagonal
-    const std::int32_t* chunk_entry_begin;
-    const std::int32_t* row;
-    const Real* values;  ///< [entry][9][lane]
-    const Real* mass;    ///< [node]
-    Real* inverse;       ///< [node / width][6][lane]
-    bool blocks;         ///< true: 3 x 3 blocks; false: their diagonals alone (Jacobi)
-};
-template <class Real>
-struct DiagonalKernels {
-    void (*invert)(const DiagonalArguments<Real>& arguments, int block);
-};
-
 }  // namespace lancet::kernels

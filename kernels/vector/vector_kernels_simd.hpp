@@ -132,63 +132,6 @@ struct VectorPass {
     }
 };
 
-/// Inverts the symmetric diagonal blocks by their adjugates, scaled so that neither overflow nor underflow occurs.
-/// Nodes without stiffness and mass get zero.
-template <class P>
-void invert_diagonal(const DiagonalArguments<typename P::Real>& a, int block) {
-    using Real = typename P::Real;
-    constexpr int W = P::width;
-    const std::int64_t begin = a.block_begin[block], end = a.block_begin[block + 1];
-    for (std::int64_t i = 6 * begin; i < 6 * end; ++i) a.inverse[i] = Real(0);
-    for (std::int64_t chunk = a.block_chunk_begin[block]; chunk < a.block_chunk_begin[block + 1]; ++chunk) {
-        const std::int64_t entry = a.chunk_entry_begin[chunk];
-        if (entry == a.chunk_entry_begin[chunk + 1]) continue;  // a chunk of unused nodes
-        const std::int32_t* row = a.row + chunk * W;
-        const Real* values = a.values + entry * 9 * W;
-        Real masses[W];
-        for (int lane = 0; lane < W; ++lane) masses[lane] = a.mass[row[lane]];
-        const P mass = P::load(masses);
-        P xx = P::load(values) + mass, yy = P::load(values + 4 * W) + mass, zz = P::load(values + 8 * W) + mass;
-        const P size = xx + yy + zz;
-        const auto is_used = size > P(Real(0));
-        const P one(Real(1)), zero(Real(0));
-        const P factor = one / select(is_used, size, one);
-        P inverse[6];
-        if (a.blocks) {
-            const P half = P(Real(0.5)) * factor;
-            xx *= factor;
-            yy *= factor;
-            zz *= factor;
-            const P xy = half * (P::load(values + W) + P::load(values + 3 * W));
-            const P xz = half * (P::load(values + 2 * W) + P::load(values + 6 * W));
-            const P yz = half * (P::load(values + 5 * W) + P::load(values + 7 * W));
-            const P cxx = fnma(yz, yz, yy * zz), cxy = fnma(xy, zz, xz * yz), cxz = fnma(xz, yy, xy * yz);
-            const P determinant = fma(xz, cxz, fma(xy, cxy, xx * cxx));
-            const P scaled = factor / select(is_used, determinant, one);
-            inverse[0] = cxx * scaled;
-            inverse[1] = fnma(xz, xz, xx * zz) * scaled;
-            inverse[2] = fnma(xy, xy, xx * yy) * scaled;
-            inverse[3] = cxy * scaled;
-            inverse[4] = cxz * scaled;
-            inverse[5] = fnma(xx, yz, xy * xz) * scaled;
-        } else {
-            inverse[0] = one / select(is_used, xx, one);
-            inverse[1] = one / select(is_used, yy, one);
-            inverse[2] = one / select(is_used, zz, one);
-            inverse[3] = inverse[4] = inverse[5] = zero;
-        }
-        for (int c = 0; c < 6; ++c) {
-            Real lanes[W];
-            select(is_used, inverse[c], zero).store(lanes);
-            // Padding repeats the first row of its chunk, whose values it does not have: it must not write.
-            for (int lane = 0; lane < W; ++lane) {
-                if (lane > 0 && row[lane] == row[0]) continue;
-                a.inverse[static_cast<std::int64_t>(row[lane] / W) * 6 * W + c * W + row[lane] % W] = lanes[lane];
-            }
-        }
-    }
-}
-
 template <class P, class A>
 constexpr VectorKernels<typename P::Real, typename A::Real> make_vector_kernels() {
     using Pass = VectorPass<P, A>;
@@ -197,11 +140,6 @@ constexpr VectorKernels<typename P::Real, typename A::Real> make_vector_kernels(
             .update_and_precondition = &Pass::template run<true, true>,
             .restrict_residual = &Pass::restrict_residual,
             .precondition_with_coarse = &Pass::precondition_with_coarse};
-}
-
-template <class P>
-constexpr DiagonalKernels<typename P::Real> make_diagonal_kernels() {
-    return {.invert = &invert_diagonal<P>};
 }
 
 }  // namespace lancet::kernels

@@ -111,8 +111,8 @@ CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const ke
             for (std::int32_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
                  ++entry) {
                 for (int lane = 0; lane < pattern.width; ++lane) {
-                    const std::int32_t row = pattern.row[chunk * pattern.width + lane];
-                    const std::int32_t column = pattern.column[entry * pattern.width + lane];
+                    const std::int32_t row = pattern.row[chunk * pattern.width + lane] / 4;
+                    const std::int32_t column = pattern.column[entry * pattern.width + lane] / 4;
                     const std::int32_t a = aggregate_of_[row], b = aggregate_of_[column];
                     if (a == b) continue;
                     std::int32_t pair = -1;

@@ -42,6 +42,8 @@ class ConjugateGradients {
                                   std::span<Accumulate> x, const ConjugateGradientSettings& settings,
                                   std::span<double> history = {});
 
+    /// A nodal vector of the solver that is free between solves.
+    std::span<Real> scratch() noexcept { return z_; }
     std::size_t bytes() const noexcept;
 
   private:

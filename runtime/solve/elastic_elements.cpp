@@ -54,8 +54,8 @@ void ElasticElements<Real>::reset(Scheduler& scheduler, const double* positions)
 }
 
 template <class Real>
-double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* positions, const Wanted& wanted) {
-    const auto call = arguments(positions, wanted);
+template <class Add>
+void ElasticElements<Real>::scatter(Scheduler& scheduler, bool is_wanted, const Add& add) {
     const kernels::ScatterPlan& plan = batches_.scatter;
     const kernels::OpenArguments<Real> open{.block_begin = numbering_->block_begin.data(),
                                             .slot_begin = plan.slot_begin().data(),
@@ -64,15 +64,57 @@ double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* posit
                                             .y = force_.data(),
                                             .quadratic = nullptr,
                                             .clear_slots = plan.strategy() != ScatterStrategy::node_gather};
-    const bool open_first = plan.strategy() == ScatterStrategy::coloring && wanted.force;
+    const bool open_first = plan.strategy() == ScatterStrategy::coloring && is_wanted;
     if (open_first) {
         scheduler.for_each_block(numbering_->blocks(), [&](int block) { kernels_->matrix.open(open, block); });
     }
     for_each_color(scheduler, plan, [&](int block) {
-        if (wanted.force && !open_first) kernels_->matrix.open(open, block);
-        kernels_->tetrahedron.elastic(call, block);
+        if (is_wanted && !open_first) kernels_->matrix.open(open, block);
+        add(block);
     });
+}
+
+template <class Real>
+double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* positions, const Wanted& wanted) {
+    const auto call = arguments(positions, wanted);
+    scatter(scheduler, wanted.force, [&](int block) { kernels_->tetrahedron.elastic(call, block); });
     return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
+}
+
+template <class Real>
+void ElasticElements<Real>::invert_diagonal(Scheduler& scheduler, const DiagonalWanted& wanted,
+                                            std::span<Real> inverse) {
+    kernels::ElementDiagonalArguments<Real> shares{
+        .block_batch_begin = batches_.block_batch_begin.data(),
+        .targets = batches_.targets.data(),
+        .rest = batches_.rest.data(),
+        .rotated = rotated_.data(),
+        .element_mass = wanted.has_consistent_mass ? batches_.mass.data() : nullptr,
+        .buffer = force_.data(),
+        .stiffness_factor = static_cast<Real>(wanted.stiffness_factor),
+        .mass_factor = static_cast<Real>(wanted.mass_factor),
+        .layout = layout_,
+        .part = kernels::DiagonalPart::axial,
+        .exclusive_slots = batches_.scatter.strategy() == ScatterStrategy::node_gather};
+    const kernels::InvertDiagonalArguments<Real> inversion{.block_begin = numbering_->block_begin.data(),
+                                                           .buffer = force_.data(),
+                                                           .mass = wanted.nodal_mass,
+                                                           .inverse = inverse.data(),
+                                                           .blocks = wanted.blocks};
+    const auto add_shares = [&](int block) { kernels_->diagonal.scatter(shares, block); };
+    scatter(scheduler, true, add_shares);
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        merge_force(block);
+        kernels_->diagonal.keep(inversion, block);
+    });
+    if (wanted.blocks) {
+        shares.part = kernels::DiagonalPart::mixed;
+        scatter(scheduler, true, add_shares);
+    }
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        if (wanted.blocks) merge_force(block);
+        kernels_->diagonal.invert(inversion, block);
+    });
 }
 
 template <class Real>

@@ -47,6 +47,18 @@ class ElasticElements {
     /// Elastic force, xyz_ in newtons; read it after merge_force.
     const Real* force() const noexcept { return force_.data(); }
 
+    /// The inverses of the diagonal blocks of stiffness_factor K + mass_factor M, laid out as the vector kernels apply
+    /// them, [node / width][6][lane]; blocks: false inverts their diagonals alone. `nodal_mass` is M's row sums times
+    /// mass_factor; a consistent mass takes its other part from the elements. Overwrites the force.
+    struct DiagonalWanted {
+        double stiffness_factor;
+        double mass_factor;
+        const Real* nodal_mass;
+        bool has_consistent_mass;
+        bool blocks;
+    };
+    void invert_diagonal(Scheduler& scheduler, const DiagonalWanted& wanted, std::span<Real> inverse);
+
     const kernels::ElementBatches<Real>& batches() const noexcept { return batches_; }
     const kernels::KernelSet<Real>& kernels() const noexcept { return *kernels_; }
     const kernels::NodeNumbering& numbering() const noexcept { return *numbering_; }
@@ -61,6 +73,9 @@ class ElasticElements {
 
   private:
     kernels::TetrahedronArguments<Real> arguments(const double* positions, const Wanted& wanted);
+    /// Adds the elements' shares, add(block), to the force buffer, which is cleared first where `is_wanted`.
+    template <class Add>
+    void scatter(Scheduler& scheduler, bool is_wanted, const Add& add);
 
     const kernels::KernelSet<Real>* kernels_;
     const kernels::NodeNumbering* numbering_;

@@ -30,9 +30,12 @@ PreconditionerKind preconditioner_kind_from_string(std::string_view name) {
 template <class Real>
 Preconditioner<Real>::Preconditioner(PreconditionerKind kind, ElasticElements<Real>& elements, Operator<Real>& matrix,
                                      const OperatorDefinition& definition, double coarse_change)
-    : kind_(kind), elements_(&elements), matrix_(&matrix), coarse_change_(coarse_change) {
+    : kind_(kind),
+      elements_(&elements),
+      matrix_(&matrix),
+      coarse_change_(coarse_change),
+      has_consistent_mass_(definition.mass == MassKind::consistent) {
     if (kind == PreconditionerKind::none) return;
-    diagonal_.emplace(kernels::RowContent::diagonal, elements, definition);
     inverse_.resize(static_cast<std::size_t>(elements.numbering().free_count) * 6);
     if (kind != PreconditionerKind::coarse) return;
     if (matrix.kind() == OperatorKind::edge_blocks) {
@@ -45,29 +48,23 @@ Preconditioner<Real>::Preconditioner(PreconditionerKind kind, ElasticElements<Re
 
 template <class Real>
 void Preconditioner<Real>::invert_diagonal(Scheduler& scheduler) {
-    const auto& factors = matrix_->factors();
-    diagonal_->assemble(scheduler, factors.stiffness, factors.mass);
-    const kernels::RowPattern& pattern = diagonal_->pattern();
-    const kernels::DiagonalArguments<Real> arguments{.block_begin = elements_->numbering().block_begin.data(),
-                                                     .block_chunk_begin = pattern.block_chunk_begin.data(),
-                                                     .chunk_entry_begin = pattern.chunk_entry_begin.data(),
-                                                     .row = pattern.row.data(),
-                                                     .values = diagonal_->arguments().values,
-                                                     .mass = matrix_->scaled_mass(),
-                                                     .inverse = inverse_.data(),
-                                                     .blocks = kind_ != PreconditionerKind::jacobi};
-    scheduler.for_each_block(elements_->numbering().blocks(),
-                             [&](int block) { elements_->kernels().diagonal.invert(arguments, block); });
+    elements_->invert_diagonal(scheduler,
+                               {.stiffness_factor = matrix_->factors().stiffness,
+                                .mass_factor = matrix_->factors().mass,
+                                .nodal_mass = matrix_->scaled_mass(),
+                                .has_consistent_mass = has_consistent_mass_,
+                                .blocks = kind_ != PreconditionerKind::jacobi},
+                               inverse_);
 }
 
 template <class Real>
 void Preconditioner<Real>::refresh(Scheduler& scheduler, const double* positions) {
     if (kind_ == PreconditionerKind::none) return;
-    invert_diagonal(scheduler);
-    if (!coarse_) return;
     const auto& factors = matrix_->factors();
+    if (!coarse_) return invert_diagonal(scheduler);
     const bool same_matrix = factors.mass == coarse_factors_.mass && factors.stiffness == coarse_factors_.stiffness;
     if (!force_coarse_ && same_matrix && coarse_->change(scheduler, positions) <= coarse_change_) return;
+    invert_diagonal(scheduler);
     if (own_edges_) own_edges_->assemble(scheduler, factors.stiffness, factors.mass);
     force_coarse_ = false;
     coarse_factors_ = factors;
@@ -77,23 +74,24 @@ void Preconditioner<Real>::refresh(Scheduler& scheduler, const double* positions
 
 template <class Real>
 std::size_t Preconditioner<Real>::bytes() const noexcept {
-    return kernels::heap_bytes(inverse_) + (diagonal_ ? diagonal_->bytes() : 0) +
-           (own_edges_ ? own_edges_->bytes() : 0) + (coarse_ ? coarse_->bytes() : 0);
+    return kernels::heap_bytes(inverse_) + (own_edges_ ? own_edges_->bytes() : 0) + (coarse_ ? coarse_->bytes() : 0);
 }
 
 template <class Real>
 void Preconditioner<Real>::save(std::vector<double>& numbers) const {
     numbers.insert(numbers.end(), {force_coarse_ ? 1.0 : 0.0, coarse_factors_.mass, coarse_factors_.stiffness});
+    numbers.insert(numbers.end(), inverse_.begin(), inverse_.end());
     if (coarse_) coarse_->save(numbers);
 }
 
 template <class Real>
-void Preconditioner<Real>::restore(Scheduler& scheduler, std::span<const double>& numbers, bool operator_is_assembled) {
+void Preconditioner<Real>::restore(std::span<const double>& numbers) {
     force_coarse_ = numbers[0] != 0;
     coarse_factors_ = {.mass = numbers[1], .stiffness = numbers[2]};
     numbers = numbers.subspan(3);
+    for (std::size_t i = 0; i < inverse_.size(); ++i) inverse_[i] = static_cast<Real>(numbers[i]);
+    numbers = numbers.subspan(inverse_.size());
     if (coarse_) coarse_->restore(numbers);
-    if (kind_ != PreconditionerKind::none && operator_is_assembled) invert_diagonal(scheduler);
 }
 
 template class Preconditioner<float>;

@@ -24,8 +24,9 @@ PreconditionerKind preconditioner_kind_from_string(std::string_view name);
 template <class Real>
 class Preconditioner {
   public:
-    /// `matrix` and `elements` must outlive it. The coarse space is refreshed when an aggregate has changed by more
-    /// than `coarse_change` (see CoarseSpace::change) since the last time.
+    /// `matrix` and `elements` must outlive it. With a coarse space, which measures how the body has changed, the
+    /// preconditioner is refreshed when an aggregate has changed by more than `coarse_change` (see CoarseSpace::change)
+    /// since the last time; without one, always.
     Preconditioner(PreconditionerKind kind, ElasticElements<Real>& elements, Operator<Real>& matrix,
                    const OperatorDefinition& definition, double coarse_change);
 
@@ -45,8 +46,8 @@ class Preconditioner {
     std::size_t bytes() const noexcept;
 
     void save(std::vector<double>& numbers) const;
-    /// Reads back what save wrote; takes up the diagonal of the operator, which has been assembled, if told so.
-    void restore(Scheduler& scheduler, std::span<const double>& numbers, bool operator_is_assembled);
+    /// Reads back what save wrote.
+    void restore(std::span<const double>& numbers);
 
   private:
     void invert_diagonal(Scheduler& scheduler);
@@ -55,7 +56,7 @@ class Preconditioner {
     ElasticElements<Real>* elements_;
     Operator<Real>* matrix_;
     double coarse_change_;
-    std::optional<BlockMatrix<Real>> diagonal_;
+    bool has_consistent_mass_;
     kernels::AlignedVector<Real> inverse_;
     std::optional<BlockMatrix<Real>> own_edges_;  ///< where the operator itself has none
     std::optional<CoarseSpace<Real>> coarse_;

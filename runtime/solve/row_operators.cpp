@@ -22,7 +22,7 @@ void BlockMatrix<Real>::set_entry_mass(double mass_factor) {
     if (entry_mass_factor_ == mass_factor) return;
     entry_mass_factor_ = mass_factor;
     const auto width = static_cast<std::size_t>(pattern_.width);
-    const std::int32_t nothing = 4 * elements_->batches().slots();
+    const std::int32_t nothing = 16 * elements_->batches().slots();
     for (std::size_t entry = 0; entry < static_cast<std::size_t>(pattern_.entries()); ++entry) {
         for (std::size_t lane = 0; lane < width; ++lane) {
             double mass = 0;
@@ -31,7 +31,7 @@ void BlockMatrix<Real>::set_entry_mass(double mass_factor) {
                 const std::int32_t row = corners[lane], column = corners[width + lane];
                 if (row == nothing) continue;
                 // int rho phi_i phi_j is rho V / 10 for i = j and rho V / 20 else; the row sum rho V / 4 is nodal.
-                mass += static_cast<double>(elements_->batches().mass[row >> 2]) * (row == column ? -3.0 : 1.0) / 20;
+                mass += static_cast<double>(elements_->batches().mass[row >> 4]) * (row == column ? -3.0 : 1.0) / 20;
             }
             entry_mass_[entry * width + lane] = static_cast<Real>(mass_factor * mass);
         }

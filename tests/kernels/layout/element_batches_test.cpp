@@ -32,7 +32,7 @@ TEST_P(ElementBatches, HoldEveryElementOnceAndPaddingWithoutWeight) {
         const std::size_t batch = static_cast<std::size_t>(slot) / w, lane = static_cast<std::size_t>(slot) % w;
         for (std::size_t corner = 0; corner < 4; ++corner) {
             EXPECT_EQ(batches.nodes[(batch * 4 + corner) * w + lane],
-                      numbering.internal_of_user[solid.tetrahedra[e][corner]]);
+                      4 * numbering.internal_of_user[solid.tetrahedra[e][corner]]);
         }
         const double volume = solid.volume(e), mu = solid.material(e).mu();
         const double* rest = &batches.rest[batch * 11 * w + lane];
@@ -59,7 +59,7 @@ TEST_P(ElementBatches, HoldEveryElementOnceAndPaddingWithoutWeight) {
         EXPECT_EQ(batches.rest[(batch * 11 + 9) * w + lane], 0) << "the weight of padding";
         EXPECT_EQ(batches.mass[batch * w + lane], 0);
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const std::int32_t node = batches.nodes[(batch * 4 + corner) * w + lane];
+            const std::int32_t node = batches.nodes[(batch * 4 + corner) * w + lane] / 4;
             ASSERT_GE(node, 0);
             ASSERT_LT(node, numbering.node_count);
         }

@@ -46,12 +46,12 @@ TEST_P(ScatterPlan, SumsWhatANaiveLoopSums) {
             for_each_lane(block, [&](std::size_t batch, std::size_t corner, std::size_t lane) {
                 const std::size_t at = place(batch, corner, lane);
                 ASSERT_GE(batches.targets[at], 0);
-                ASSERT_LT(batches.targets[at], plan.buffer_size());
+                ASSERT_LT(batches.targets[at] / 4, plan.buffer_size());
                 if (is_padding(batch, lane)) {
-                    buffer[batches.targets[at]] += of_padding;
+                    buffer[batches.targets[at] / 4] += of_padding;
                 } else {
-                    buffer[batches.targets[at]] += value(at);
-                    expected[batches.nodes[at]] += value(at);
+                    buffer[batches.targets[at] / 4] += value(at);
+                    expected[batches.nodes[at] / 4] += value(at);
                 }
             });
         }
@@ -76,7 +76,7 @@ TEST_P(ScatterPlan, BlocksOfAColorWriteToDisjointPlaces) {
             EXPECT_TRUE(blocks_seen.insert(block).second) << "block " << block << " has two colors";
             std::set<std::int32_t> of_block;
             for_each_lane(block, [&](std::size_t batch, std::size_t corner, std::size_t lane) {
-                of_block.insert(batches.targets[place(batch, corner, lane)]);
+                of_block.insert(batches.targets[place(batch, corner, lane)] / 4);
             });
             for (const std::int32_t target : of_block) {
                 EXPECT_TRUE(written.insert(target).second) << "two blocks of a color write to " << target;
@@ -112,10 +112,10 @@ TEST_P(NodeGather, GivesEveryContributionASlot) {
     for (int block = 0; block < numbering.blocks(); ++block) {
         for_each_lane(block, [&](std::size_t batch, std::size_t corner, std::size_t lane) {
             const std::size_t at = place(batch, corner, lane);
-            EXPECT_GE(batches.targets[at], numbering.node_count) << "nothing is added to a node directly";
-            if (is_padding(batch, lane) || !numbering.is_free(batches.nodes[at])) return;
+            EXPECT_GE(batches.targets[at] / 4, numbering.node_count) << "nothing is added to a node directly";
+            if (is_padding(batch, lane) || !numbering.is_free(batches.nodes[at] / 4)) return;
             ++to_free_nodes;
-            EXPECT_TRUE(slots.insert(batches.targets[at]).second);
+            EXPECT_TRUE(slots.insert(batches.targets[at] / 4).second);
         });
     }
     EXPECT_EQ(slots.size(), to_free_nodes);

@@ -15,10 +15,10 @@ std::vector<Real> nodal_vector() {
     return v;
 }
 
-/// A different node in every lane, in no order.
+/// The places of a different node in every lane, in no order.
 std::vector<std::int32_t> distinct(int width) {
     std::vector<std::int32_t> index(width);
-    for (int lane = 0; lane < width; ++lane) index[lane] = (lane * 7 + 3) % nodes;
+    for (int lane = 0; lane < width; ++lane) index[lane] = 4 * ((lane * 7 + 3) % nodes);
     return index;
 }
 
@@ -42,7 +42,7 @@ TEST_P(NodesTest, LoadTransposesIntoLanes) {
         probe.load_consecutive(nodal.data() + 4 * 5, row.data());
         for (int c = 0; c < 3; ++c) {
             for (int lane = 0; lane < probe.width; ++lane) {
-                EXPECT_EQ(lanes[c * probe.width + lane], nodal[4 * index[lane] + c]) << "lane " << lane;
+                EXPECT_EQ(lanes[c * probe.width + lane], nodal[index[lane] + c]) << "lane " << lane;
                 EXPECT_EQ(row[c * probe.width + lane], nodal[4 * (5 + lane) + c]) << "lane " << lane;
             }
         }
@@ -61,7 +61,7 @@ TEST_P(NodesTest, StoreWritesItsNodesAndNoOther) {
         for (int lane = 0; lane < probe.width; ++lane) {
             for (int c = 0; c < 4; ++c) {
                 const Real value = c < 3 ? lanes[c * probe.width + lane] : Real(0);
-                scattered_right[4 * index[lane] + c] = value;
+                scattered_right[index[lane] + c] = value;
                 row_right[4 * (5 + lane) + c] = value;
             }
         }
@@ -76,12 +76,12 @@ TEST_P(NodesTest, LanesMayAddToTheSameNode) {
     for_each_scalar([]<class Real>(const SimdProbe<Real>& probe) {
         for (const int period : {1, 2, 3, nodes}) {  // all lanes share one node ... none does
             std::vector<std::int32_t> index(probe.width);
-            for (int lane = 0; lane < probe.width; ++lane) index[lane] = 4 + lane % period;
+            for (int lane = 0; lane < probe.width; ++lane) index[lane] = 4 * (4 + lane % period);
             const auto lanes = lane_values<Real>(probe.width);
             auto nodal = nodal_vector<Real>();
             auto right = nodal;
             for (int lane = 0; lane < probe.width; ++lane) {
-                for (int c = 0; c < 3; ++c) right[4 * index[lane] + c] += lanes[c * probe.width + lane];
+                for (int c = 0; c < 3; ++c) right[index[lane] + c] += lanes[c * probe.width + lane];
             }
             probe.add_to_nodes(nodal.data(), index.data(), lanes.data());
             EXPECT_EQ(nodal, right) << "period " << period;
@@ -96,12 +96,12 @@ TEST_P(NodesTest, DifferencesAreFormedInDouble) {
         for (int i = 0; i < 4 * nodes; ++i) nodal[i] = 1e6 + 1e-6 * std::sin(1.0 + i);
         const auto index = distinct(probe.width);
         std::vector<std::int32_t> origin(probe.width);
-        for (int lane = 0; lane < probe.width; ++lane) origin[lane] = (lane * 5 + 1) % nodes;
+        for (int lane = 0; lane < probe.width; ++lane) origin[lane] = 4 * ((lane * 5 + 1) % nodes);
         std::vector<Real> lanes(3 * probe.width);
         probe.load_differences(nodal.data(), index.data(), origin.data(), lanes.data());
         for (int c = 0; c < 3; ++c) {
             for (int lane = 0; lane < probe.width; ++lane) {
-                const double right = nodal[4 * index[lane] + c] - nodal[4 * origin[lane] + c];
+                const double right = nodal[index[lane] + c] - nodal[origin[lane] + c];
                 EXPECT_EQ(lanes[c * probe.width + lane], static_cast<Real>(right)) << "lane " << lane;
             }
         }

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
+#include "lancet/kernels/operator/diagonal_kernels.hpp"
+
+namespace lancet::kernels {
+
+template <class P>
+void scatter_diagonal(const ElementDiagonalArguments<typename P::Real>& a, int block) {
+    using Real = typename P::Real;
+    constexpr int W = P::width;
+    const P factor(a.stiffness_factor);
+    for (std::int64_t batch = a.block_batch_begin[block]; batch < a.block_batch_begin[block + 1]; ++batch) {
+        const Corners<P> b = a.layout == GradientLayout::batches ? load_corners<P>(a.rotated + batch * 9 * W)
+                                                                 : load_gradient_corners<P>(a.rotated + batch * 16 * W);
+        const Vector3<P> total = b.sum();
+        const Vector3<P> all[4] = {{-total.x, -total.y, -total.z}, b.of[0], b.of[1], b.of[2]};
+        const P dyad = factor * (P(Real(1)) + P::load(a.rest + (batch * ElementBatches<Real>::rest_entries + 10) * W));
+        // int rho phi_i^2 = rho V / 10 is the nodal share rho V / 4 less 3/20.
+        const P mass = a.element_mass == nullptr
+                           ? P(Real(0))
+                           : P(Real(-3.0 / 20) * a.mass_factor) * P::load(a.element_mass + batch * W);
+        for (int corner = 0; corner < 4; ++corner) {
+            const Vector3<P>& g = all[corner];
+            Vector3<P> share;
+            if (a.part == DiagonalPart::axial) {
+                const P common = fma(factor, fma(g.z, g.z, fma(g.y, g.y, g.x * g.x)), mass);
+                share = {fma(dyad * g.x, g.x, common), fma(dyad * g.y, g.y, common), fma(dyad * g.z, g.z, common)};
+            } else {
+                share = {dyad * g.x * g.y, dyad * g.x * g.z, dyad * g.y * g.z};
+            }
+            const std::int32_t* targets = a.targets + (batch * 4 + corner) * W;
+            if (a.exclusive_slots) {
+                store_nodes(a.buffer, targets, share);
+            } else {
+                add_to_nodes(a.buffer, targets, share);
+            }
+        }
+    }
+}
+
+template <class P>
+void keep_axial_part(const InvertDiagonalArguments<typename P::Real>& a, int block) {
+    constexpr int W = P::width;
+    for (std::int64_t node = a.block_begin[block]; node < a.block_begin[block + 1]; node += W) {
+        const Vector3<P> axial = load_nodes<P>(a.buffer + 4 * node);
+        axial.x.store(a.inverse + 6 * node);
+        axial.y.store(a.inverse + 6 * node + W);
+        axial.z.store(a.inverse + 6 * node + 2 * W);
+    }
+}
+
+/// Inverts by the adjugates, scaled so that neither overflow nor underflow occurs.
+template <class P>
+void invert_diagonal(const InvertDiagonalArguments<typename P::Real>& a, int block) {
+    using Real = typename P::Real;
+    constexpr int W = P::width;
+    const P one(Real(1)), zero(Real(0));
+    for (std::int64_t node = a.block_begin[block]; node < a.block_begin[block + 1]; node += W) {
+        Real* stored = a.inverse + 6 * node;
+        const P mass = P::load(a.mass + node);
+        P xx = P::load(stored) + mass, yy = P::load(stored + W) + mass, zz = P::load(stored + 2 * W) + mass;
+        const P size = xx + yy + zz;
+        const auto is_used = size > zero;
+        const P factor = one / select(is_used, size, one);
+        P inverse[6];
+        if (a.blocks) {
+            const Vector3<P> mixed = load_nodes<P>(a.buffer + 4 * node);
+            xx *= factor;
+            yy *= factor;
+            zz *= factor;
+            const P xy = factor * mixed.x, xz = factor * mixed.y, yz = factor * mixed.z;
+            const P cxx = fnma(yz, yz, yy * zz), cxy = fnma(xy, zz, xz * yz), cxz = fnma(xz, yy, xy * yz);
+            const P determinant = fma(xz, cxz, fma(xy, cxy, xx * cxx));
+            const P scaled = factor / select(is_used, determinant, one);
+            inverse[0] = cxx * scaled;
+            inverse[1] = fnma(xz, xz, xx * zz) * scaled;
+            inverse[2] = fnma(xy, xy, xx * yy) * scaled;
+            inverse[3] = cxy * scaled;
+            inverse[4] = cxz * scaled;
+            inverse[5] = fnma(xx, yz, xy * xz) * scaled;
+        } else {
+            inverse[0] = one / select(is_used, xx, one);
+            inverse[1] = one / select(is_used, yy, one);
+            inverse[2] = one / select(is_used, zz, one);
+            inverse[3] = inverse[4] = inverse[5] = zero;
+        }
+        for (int c = 0; c < 6; ++c) select(is_used, inverse[c], zero).store(stored + c * W);
+    }
+}
+
+template <class P>
+constexpr DiagonalKernels<typename P::Real> make_diagonal_kernels() {
+    return {.scatter = &scatter_diagonal<P>, .keep = &keep_axial_part<P>, .invert = &invert_diagonal<P>};
+}
+
+}  // namespace lancet::kernels
