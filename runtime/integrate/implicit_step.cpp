@@ -39,10 +39,8 @@ ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, co
       start_position_(mass_.size() * 4),
       start_velocity_(mass_.size() * 4),
       trial_velocity_(mass_.size() * 4),
-      evaluated_(mass_.size() * 4),
       right_hand_side_(mass_.size() * 4),
       change_(mass_.size() * 4),
-      product_input_(mass_.size() * 4),
       partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
 
 template <class Real, class Accumulate>
@@ -95,11 +93,12 @@ bool ImplicitStep<Real, Accumulate>::is_finite(Scheduler& scheduler, std::span<c
 }
 
 template <class Real, class Accumulate>
-void ImplicitStep<Real, Accumulate>::move(Scheduler& scheduler, BodyMotion& motion, double factor) {
+void ImplicitStep<Real, Accumulate>::move(Scheduler& scheduler, BodyMotion& motion, double factor,
+                                          std::span<const double> velocity) {
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
-            motion.position[i] = start_position_[i] + factor * motion.velocity[i];
+            motion.position[i] = start_position_[i] + factor * velocity[i];
         }
     });
 }
@@ -109,7 +108,7 @@ void ImplicitStep<Real, Accumulate>::add_change(Scheduler& scheduler, BodyMotion
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
-            motion.velocity[i] += static_cast<double>(change_[i]);
+            motion.velocity[i] += static_cast<double>(change_[i]) + fall_[i % 4];
         }
     });
 }
@@ -137,15 +136,21 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
     const double h = step_length();
     const bool needs_product = at_state || loads.rayleigh_stiffness > 0;
     if (needs_product) {
-        for (std::size_t i = 0; i < product_input_.size(); ++i) {
-            product_input_[i] = static_cast<Real>(motion.velocity[i]);
-        }
-        matrix_->product(scheduler, product_input_.data());
+        const std::span<Real> velocity = conjugate_gradients_.scratch();
+        for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = static_cast<Real>(motion.velocity[i]);
+        matrix_->product(scheduler, velocity.data());
     }
     // Linearised at the state: dt D v + dt^2 K v = A v - M v. At the prediction: dt beta K v is a part of A v.
     const double stiffness_share = at_state ? 1 : h * loads.rayleigh_stiffness / (h * h + h * loads.rayleigh_stiffness);
     const double product_mass = at_state ? 1 : 1 + h * loads.rayleigh_mass;
     const double drag = at_state ? 0 : h * loads.rayleigh_mass;
+    // A body that nothing holds falls as a whole: that part of dv is known, A dv = dt M g for dv = dt g / (1 + dt
+    // alpha), and solving for the rest alone keeps a fall free of strain, however few the iterations.
+    const bool is_held = numbering_->free_count < numbering_->node_count || !filter.empty();
+    const std::array<double, 3> load = is_held ? loads.gravity : std::array<double, 3>{0, 0, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        fall_[axis] = is_held ? 0 : h * loads.gravity[axis] / (1 + h * loads.rayleigh_mass);
+    }
     std::vector<double>& squares = partial_;
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         elements_->merge_force(block);
@@ -160,8 +165,8 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
                 const double change = inertia(
                     at, [&](std::size_t j) { return motion.velocity[4 * j + axis] - start_velocity_[4 * j + axis]; });
                 const double momentum = inertia(at, [&](std::size_t j) { return motion.velocity[4 * j + axis]; });
-                double b = h * (static_cast<double>(force[i]) + mass * loads.gravity[axis] + loads.nodal[i]) - change -
-                           drag * momentum;
+                double b =
+                    h * (static_cast<double>(force[i]) + mass * load[axis] + loads.nodal[i]) - change - drag * momentum;
                 if (needs_product) {
                     b -= stiffness_share * (static_cast<double>(product[i]) - product_mass * momentum);
                 }
@@ -183,10 +188,10 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
 }
 
 template <class Real, class Accumulate>
-ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& scheduler, const ConstraintFilter& filter,
-                                                              StepReport& report) {
+ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& scheduler, const BodyMotion& motion,
+                                                              const ConstraintFilter& filter, StepReport& report) {
     if (!matrix_is_known_) {
-        preconditioner_->refresh(scheduler, evaluated_.data());
+        preconditioner_->refresh(scheduler, motion.position.data());
         matrix_is_known_ = true;
     }
     const ConjugateGradientResult result = conjugate_gradients_.solve(
@@ -203,15 +208,14 @@ void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyM
                                                      StepTotals& totals) {
     Timer timer;
     const bool renew = steps_since_renewal_ == 0;
-    evaluated_ = motion.position;
-    linearise(scheduler, evaluated_.data(), loads, renew);
+    linearise(scheduler, motion.position.data(), loads, renew);
     timer.add_to(totals.seconds_forces);
     right_hand_side(scheduler, motion, loads, filter, true);
     timer.add_to(totals.seconds_rest);
-    solve(scheduler, filter, report);
+    solve(scheduler, motion, filter, report);
     timer.add_to(totals.seconds_solve);
     add_change(scheduler, motion);
-    move(scheduler, motion, step_length());
+    move(scheduler, motion, step_length(), motion.velocity);
     report.newton_iterations = 1;
     timer.add_to(totals.seconds_rest);
 }
@@ -225,10 +229,9 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
     const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0;
     for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
         Timer timer;
-        move(scheduler, motion, h);
-        evaluated_ = motion.position;
+        move(scheduler, motion, h, motion.velocity);
         timer.add_to(totals.seconds_rest);
-        linearise(scheduler, evaluated_.data(), loads, iteration > 0 || steps_since_renewal_ == 0);
+        linearise(scheduler, motion.position.data(), loads, iteration > 0 || steps_since_renewal_ == 0);
         timer.add_to(totals.seconds_forces);
         const Residual residual = right_hand_side(scheduler, motion, loads, filter, false);
         if (iteration == 0) {
@@ -244,11 +247,11 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         }
         timer.add_to(totals.seconds_rest);
         if (iteration > 0 && std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * reference) break;
-        solve(scheduler, filter, report);
+        solve(scheduler, motion, filter, report);
         timer.add_to(totals.seconds_solve);
         if (iterates) {
             // Where no step along the direction descends, the iterate is as good as the scalar type allows.
-            if (iteration == 0) potential = incremental_potential(scheduler, motion.velocity, loads);
+            if (iteration == 0) potential = incremental_potential(scheduler, motion, motion.velocity, loads);
             // Rounding of the scalar, and of the positions: small strains are differences of large coordinates.
             const double rounding =
                 std::max(64 * static_cast<double>(std::numeric_limits<Real>::epsilon()), 1e-10) * std::abs(potential);
@@ -263,7 +266,7 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         timer.add_to(totals.seconds_rest);
     }
     Timer timer;
-    move(scheduler, motion, h);
+    move(scheduler, motion, h, motion.velocity);
     timer.add_to(totals.seconds_rest);
 }
 
@@ -311,11 +314,11 @@ double ImplicitStep<Real, Accumulate>::growth(Scheduler& scheduler, const BodyMo
 }
 
 template <class Real, class Accumulate>
-double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& scheduler, std::span<const double> velocity,
-                                                             const BodyLoads& loads) {
+double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& scheduler, BodyMotion& motion,
+                                                             std::span<const double> velocity, const BodyLoads& loads) {
     const double h = step_length();
-    for (std::size_t i = 0; i < evaluated_.size(); ++i) evaluated_[i] = start_position_[i] + h * velocity[i];
-    const double elastic = elastic_energy(scheduler, evaluated_.data());
+    move(scheduler, motion, h, velocity);
+    const double elastic = elastic_energy(scheduler, motion.position.data());
     return elastic + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
                double sum = 0;
                for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -336,9 +339,9 @@ bool ImplicitStep<Real, Accumulate>::descend(Scheduler& scheduler, BodyMotion& m
     double length = 1;
     for (int halving = 0; halving < 12; ++halving, length /= 2) {
         for (std::size_t i = 0; i < trial_velocity_.size(); ++i) {
-            trial_velocity_[i] = motion.velocity[i] + length * static_cast<double>(change_[i]);
+            trial_velocity_[i] = motion.velocity[i] + length * (static_cast<double>(change_[i]) + fall_[i % 4]);
         }
-        const double trial = incremental_potential(scheduler, trial_velocity_, loads);
+        const double trial = incremental_potential(scheduler, motion, trial_velocity_, loads);
         if (!(trial < potential + rounding)) continue;
         potential = trial;
         motion.velocity = trial_velocity_;
@@ -371,24 +374,23 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
 
     report.repeated = true;
     const double h = step_length();
-    double potential = incremental_potential(scheduler, motion.velocity, loads);
-    const double potential_at_start = incremental_potential(scheduler, start_velocity_, loads);
+    double potential = incremental_potential(scheduler, motion, motion.velocity, loads);
+    const double potential_at_start = incremental_potential(scheduler, motion, start_velocity_, loads);
     if (!(potential < potential_at_start)) {
         motion.velocity = start_velocity_;
         potential = potential_at_start;
     }
     for (int iteration = 0; iteration < settings_.safeguard_iterations && gained; ++iteration) {
-        move(scheduler, motion, h);
-        evaluated_ = motion.position;
-        linearise(scheduler, evaluated_.data(), loads, true);
+        move(scheduler, motion, h, motion.velocity);
+        linearise(scheduler, motion.position.data(), loads, true);
         right_hand_side(scheduler, motion, loads, filter, false);
         timer.add_to(totals.seconds_forces);
-        solve(scheduler, filter, report);
+        solve(scheduler, motion, filter, report);
         ++report.newton_iterations;
         timer.add_to(totals.seconds_solve);
         const bool decreased = descend(scheduler, motion, loads, potential, 0);
         if (!decreased) break;
-        move(scheduler, motion, h);
+        move(scheduler, motion, h, motion.velocity);
         kinetic_ = kinetic;
         elastic_ = elastic;
         gained = growth(scheduler, motion, loads, before_hold) > 0;
@@ -400,14 +402,14 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
     if (gained && is_finite(scheduler, motion.velocity)) {
         for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
             slow_down(scheduler, motion, filter, attempt < attempts ? 0.75 : 0.0);
-            move(scheduler, motion, h);
+            move(scheduler, motion, h, motion.velocity);
             kinetic_ = kinetic;
             elastic_ = elastic;
             gained = growth(scheduler, motion, loads, before_hold) > 0;
         }
         timer.add_to(totals.seconds_forces);
     }
-    move(scheduler, motion, h);
+    move(scheduler, motion, h, motion.velocity);
     matrix_is_known_ = false;
     if (is_finite(scheduler, motion.velocity) && is_finite(scheduler, motion.position)) return;
     // Nothing finite was found: the body stops where it was.
@@ -443,7 +445,7 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     }
     if (settings_.integrator == Integrator::implicit_midpoint) {
         Timer rest;
-        move(scheduler, motion, settings_.time_step);
+        move(scheduler, motion, settings_.time_step, motion.velocity);
         for (std::size_t i = 0; i < start_velocity_.size(); ++i) {
             motion.velocity[i] = 2 * motion.velocity[i] - start_velocity_[i];
         }
@@ -500,8 +502,7 @@ std::size_t ImplicitStep<Real, Accumulate>::bytes() const noexcept {
     using kernels::heap_bytes;
     return heap_bytes(mass_) + consistent_mass_.bytes() + matrix_->bytes() + preconditioner_->bytes() +
            conjugate_gradients_.bytes() + heap_bytes(start_position_) + heap_bytes(start_velocity_) +
-           heap_bytes(trial_velocity_) + heap_bytes(evaluated_) + heap_bytes(right_hand_side_) + heap_bytes(change_) +
-           heap_bytes(product_input_) + heap_bytes(partial_);
+           heap_bytes(trial_velocity_) + heap_bytes(right_hand_side_) + heap_bytes(change_) + heap_bytes(partial_);
 }
 
 template <class Real, class Accumulate>
@@ -521,7 +522,7 @@ void ImplicitStep<Real, Accumulate>::restore(Scheduler& scheduler, std::span<con
     steps_since_renewal_ = static_cast<int>(numbers[4]);
     if (matrix_is_known_) matrix_->assemble(scheduler, {.mass = numbers[5], .stiffness = numbers[6]});
     numbers = numbers.subspan(7);
-    preconditioner_->restore(scheduler, numbers, matrix_is_known_);
+    preconditioner_->restore(numbers);
 }
 
 template class ImplicitStep<float, float>;

@@ -68,7 +68,8 @@ class ImplicitStep {
     void linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads, bool renew);
     Residual right_hand_side(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                              const ConstraintFilter& filter, bool at_state);
-    ConjugateGradientResult solve(Scheduler& scheduler, const ConstraintFilter& filter, StepReport& report);
+    ConjugateGradientResult solve(Scheduler& scheduler, const BodyMotion& motion, const ConstraintFilter& filter,
+                                  StepReport& report);
     void newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
                 StepReport& report, StepTotals& totals);
     void step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
@@ -78,16 +79,18 @@ class ImplicitStep {
     /// What the step gained in energy beyond the work of loads and holds, less what rounding explains.
     double growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                   std::span<const double> before_hold);
-    double incremental_potential(Scheduler& scheduler, std::span<const double> velocity, const BodyLoads& loads);
+    /// Leaves the positions that belong to `velocity` in `motion`.
+    double incremental_potential(Scheduler& scheduler, BodyMotion& motion, std::span<const double> velocity,
+                                 const BodyLoads& loads);
     double kinetic_energy(Scheduler& scheduler, std::span<const double> velocity);
     double elastic_energy(Scheduler& scheduler, const double* position);
     /// motion.velocity += the solution of the last solve.
     void add_change(Scheduler& scheduler, BodyMotion& motion);
     /// Goes along the solution of the last solve as far as the incremental potential falls by halving the step; false
-    /// if it does not fall, up to `rounding`. `potential` is that of the motion, on entry and on exit.
+    /// if it does not fall, up to `rounding`. `potential` is that of the motion, on entry and on exit; `move` after it.
     bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
-    void move(Scheduler& scheduler, BodyMotion& motion, double factor);
+    void move(Scheduler& scheduler, BodyMotion& motion, double factor, std::span<const double> velocity);
     /// A component of M v at a free node; value(node) is that component of v.
     template <class Value>
     double inertia(std::size_t node, const Value& value) const;
@@ -106,10 +109,9 @@ class ImplicitStep {
     std::unique_ptr<Preconditioner<Real>> preconditioner_;
     ConjugateGradients<Real, Accumulate> conjugate_gradients_;
     kernels::AlignedVector<double> start_position_, start_velocity_, trial_velocity_;
-    kernels::AlignedVector<double> evaluated_;  ///< where forces and energies are evaluated
     kernels::AlignedVector<Accumulate> right_hand_side_, change_;
-    kernels::AlignedVector<Real> product_input_;
     std::vector<double> partial_;
+    std::array<double, 4> fall_{};      ///< what gravity alone adds to the velocity of a body that nothing holds
     double kinetic_ = 0, elastic_ = 0;  ///< at the end of the last step
     bool energy_is_known_ = false;
     bool matrix_is_known_ = false;

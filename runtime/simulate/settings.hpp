@@ -50,7 +50,7 @@ struct Settings {
     Linearisation linearisation = Linearisation::prediction;
     ConjugateGradientSettings conjugate_gradients{};
     PreconditionerKind preconditioner = PreconditionerKind::coarse;
-    double coarse_change = 0.1;      ///< see Preconditioner
+    double coarse_change = 0.2;      ///< see Preconditioner
     int newton_iterations = 1;       ///< at most; 1: linearised once
     double newton_tolerance = 1e-8;  ///< of the residual against that at the first linearisation and the loads
     bool energy_safeguard = true;    ///< repeat a step that gained energy without work (see DeformableBody::step)
