@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "lancet/kernels/layout/element_batches.hpp"
@@ -20,6 +22,37 @@ struct Material {
 /// The Lame parameters of a material. Throws lancet::Error for values outside the ranges above.
 kernels::ElasticParameters elastic_parameters(const Material& material);
 
+/// A dead force on a node.
+struct NodalLoad {
+    std::int32_t node;
+    std::array<double, 3> force;  ///< N
+};
+
+/// A dead force per length, uniform over the edge between two nodes at rest.
+struct EdgeLoad {
+    std::array<std::int32_t, 2> nodes;
+    std::array<double, 3> force_per_length;  ///< N / m
+};
+
+/// A dead force per area, uniform over triangles of the boundary at rest.
+struct Traction {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    std::array<double, 3> force_per_area;  ///< Pa
+};
+
+/// One component of a node's displacement as a function of time. Statics take it at time 0.
+struct PrescribedDisplacement {
+    std::int32_t node;
+    int axis;                                    ///< 0, 1 or 2
+    std::function<double(double)> displacement;  ///< metres from the position at rest, of the time in seconds
+};
+
+/// A rigid, frictionless half-space that nodes cannot enter.
+struct Floor {
+    std::array<double, 3> point;
+    std::array<double, 3> normal;  ///< of unit length, out of the floor
+};
+
 /// What is simulated: a body at rest, what it is made of, what holds and what pulls it.
 struct Scene {
     mesh::TetMesh mesh;
@@ -27,6 +60,11 @@ struct Scene {
     std::map<int, Material> materials{{0, Material{}}};
     std::vector<std::int32_t> fixed_nodes;       ///< held for good: they leave the system of equations
     std::array<double, 3> gravity{0, -9.81, 0};  ///< m / s^2
+    std::vector<NodalLoad> nodal_loads{};
+    std::vector<EdgeLoad> edge_loads{};
+    std::vector<Traction> tractions{};
+    std::vector<PrescribedDisplacement> prescribed{};  ///< each component at most once, and not of fixed nodes
+    std::optional<Floor> floor{};
     double rayleigh_mass = 0;                    ///< D = rayleigh_mass M + rayleigh_stiffness K; 1 / s
     double rayleigh_stiffness = 0;               ///< s
 };
