@@ -7,57 +7,11 @@
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/runtime/integrate/implicit_step.hpp"
+#include "lancet/runtime/simulate/scene_layout.hpp"
 
 namespace lancet::runtime {
 
 namespace {
-
-kernels::NodeNumbering number(const Scene& scene, const Settings& settings) {
-    const std::span<const Point> nodes = scene.mesh.nodes();
-    std::vector<std::uint8_t> fixed(nodes.size(), 0);
-    for (const std::int32_t node : scene.fixed_nodes) {
-        if (node < 0 || static_cast<std::size_t>(node) >= nodes.size()) {
-            throw Error("scene: fixed node " + std::to_string(node) + "; the mesh has nodes 0 to " +
-                        std::to_string(nodes.size() - 1));
-        }
-        fixed[node] = 1;
-    }
-    const mesh::Ordering ordering = mesh::order(scene.mesh, settings.ordering);
-    return kernels::number_nodes(nodes, scene.mesh.tetrahedra(), fixed, ordering.new_of_node, settings.numbering);
-}
-
-/// The materials of the scene as one array, and for each element its place there.
-struct ElementMaterials {
-    std::vector<kernels::ElasticParameters> parameters;
-    std::vector<std::int32_t> of_element;
-};
-
-ElementMaterials element_materials(const Scene& scene) {
-    if (!scene.materials.contains(0)) throw Error("scene: region 0 has no material");
-    ElementMaterials materials;
-    std::map<int, std::int32_t> place;
-    for (const auto& [region, material] : scene.materials) {
-        place[region] = static_cast<std::int32_t>(materials.parameters.size());
-        materials.parameters.push_back(elastic_parameters(material));
-    }
-    for (const std::int32_t region : scene.mesh.regions()) {
-        const auto found = place.find(region);
-        materials.of_element.push_back(found != place.end() ? found->second : place[0]);
-    }
-    return materials;
-}
-
-std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
-                                 const kernels::NodeNumbering& numbering) {
-    std::vector<double> mass(static_cast<std::size_t>(numbering.node_count), 0.0);
-    const std::span<const mesh::Tetrahedron> tetrahedra = scene.mesh.tetrahedra();
-    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-        const double quarter = materials.parameters[materials.of_element[e]].density *
-                               kernels::tetrahedron_geometry(scene.mesh.nodes(), tetrahedra[e]).volume / 4;
-        for (const std::int32_t node : tetrahedra[e]) mass[numbering.internal_of_user[node]] += quarter;
-    }
-    return mass;
-}
 
 struct Hold {
     std::int32_t node;  ///< internal numbering
@@ -83,7 +37,7 @@ class BodyOf final : public DeformableBody {
     BodyOf(const Scene& scene, const Settings& settings, Scheduler& scheduler)
         : settings_(settings),
           element_count_(scene.mesh.tetrahedra().size()),
-          numbering_(number(scene, settings)),
+          numbering_(number_scene(scene, settings.ordering, settings.numbering)),
           elements_(make_elements(scene, settings, numbering_)),
           step_(elements_,
                 {.tetrahedra = scene.mesh.tetrahedra(),

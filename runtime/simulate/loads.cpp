@@ -63,9 +63,8 @@ std::vector<Point> external_loads(const Scene& scene) {
         const std::string what = "traction " + std::to_string(k);
         for (const mesh::Triangle& triangle : triangles) {
             const Point a = loads.edge(what, triangle[0], triangle[1]), b = loads.edge(what, triangle[0], triangle[2]);
-            const double area = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                                           a[0] * b[1] - a[1] * b[0]) /
-                                2;
+            const double area =
+                std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]) / 2;
             if (!(area > 0)) {
                 throw Error(what + ": triangle " + std::to_string(triangle[0]) + ", " + std::to_string(triangle[1]) +
                             ", " + std::to_string(triangle[2]) + " has no area");

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "lancet/kernels/layout/element_batches.hpp"
+#include "lancet/kernels/layout/node_numbering.hpp"
+#include "lancet/mesh/order.hpp"
+#include "lancet/runtime/simulate/scene.hpp"
+
+namespace lancet::runtime {
+
+/// The solver's numbering of a scene's nodes. Throws lancet::Error for fixed nodes that do not exist.
+kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
+                                    const kernels::NumberingOptions& options);
+
+/// The materials of a scene as one array, and for each element its place there.
+struct ElementMaterials {
+    std::vector<kernels::ElasticParameters> parameters;
+    std::vector<std::int32_t> of_element;
+};
+
+/// Throws lancet::Error if region 0 has no material.
+ElementMaterials element_materials(const Scene& scene);
+
+/// Row sums of the mass matrix, [internal node], in kilograms: a quarter of each element's mass at each corner.
+std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
+                                 const kernels::NodeNumbering& numbering);
+
+}  // namespace lancet::runtime
