@@ -8,7 +8,7 @@ namespace lancet::runtime {
 
 kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
                                     const kernels::NumberingOptions& options) {
-    const std::span<const Point> nodes = scene.mesh.nodes();
+    const std::span<const mesh::Point> nodes = scene.mesh.nodes();
     std::vector<std::uint8_t> fixed(nodes.size(), 0);
     for (const std::int32_t node : scene.fixed_nodes) {
         if (node < 0 || static_cast<std::size_t>(node) >= nodes.size()) {
