@@ -1,0 +1,125 @@
+// Nodal displacements of discrete problems, linear tetrahedra on equal meshes, against an independent code (12 digits).
+#include <algorithm>
+#include <cmath>
+
+#include "tests/verification/reference_table.hpp"
+#include <gtest/gtest.h>
+
+#include "lancet/runtime/simulate/equilibrium.hpp"
+
+namespace lancet::test {
+namespace {
+
+using mesh::Point;
+using runtime::ElementModel;
+using runtime::ScalarMode;
+
+struct DiscreteCase {
+    const char* name;
+    const char* mesh;
+    const char* displacements;
+    ElementModel model;
+    double energy;  ///< J; 0 where the reference gives none
+};
+
+void PrintTo(const DiscreteCase& discrete, std::ostream* stream) {
+    *stream << discrete.name;
+}
+
+class Discrete : public ::testing::TestWithParam<DiscreteCase> {
+  protected:
+    /// The beam of 0.03 x 0.06 x 0.2 m, clamped at z = 0, under gravity along x; empty where the folder is absent.
+    static runtime::Scene scene_of(const DiscreteCase& discrete) {
+        const auto folder = reference_folder() / "discrete";
+        mesh::TetMesh::Definition definition;
+        for (const auto& row : read_numbers(folder / (std::string("mesh_") + discrete.mesh + "_nodes.csv"))) {
+            definition.nodes.push_back({row[1], row[2], row[3]});
+        }
+        for (const auto& row : read_numbers(folder / (std::string("mesh_") + discrete.mesh + "_tets.csv"))) {
+            definition.tetrahedra.push_back({static_cast<std::int32_t>(row[1]), static_cast<std::int32_t>(row[2]),
+                                             static_cast<std::int32_t>(row[3]), static_cast<std::int32_t>(row[4])});
+        }
+        runtime::Scene scene;
+        scene.mesh = mesh::TetMesh(std::move(definition));
+        for (std::size_t node = 0; node < scene.mesh.nodes().size(); ++node) {
+            if (scene.mesh.nodes()[node][2] == 0) scene.fixed_nodes.push_back(static_cast<std::int32_t>(node));
+        }
+        scene.materials = {{0, {.young_modulus = 3e5, .poisson_ratio = 0.35, .density = 1070}}};
+        scene.gravity = {9.81, 0, 0};
+        return scene;
+    }
+
+    static std::vector<Point> displacements_of(const DiscreteCase& discrete) {
+        std::vector<Point> displacements;
+        for (const auto& row : read_numbers(reference_folder() / "discrete" / discrete.displacements)) {
+            displacements.push_back({row[1], row[2], row[3]});
+        }
+        return displacements;
+    }
+
+    /// The largest difference of two displacements, against the largest displacement.
+    static double difference(std::span<const Point> rest, std::span<const Point> positions,
+                             std::span<const Point> displacements) {
+        double largest = 0, difference = 0;
+        for (std::size_t node = 0; node < rest.size(); ++node) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double expected = displacements[node][axis];
+                largest = std::max(largest, std::abs(expected));
+                difference = std::max(difference, std::abs(positions[node][axis] - rest[node][axis] - expected));
+            }
+        }
+        return difference / largest;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Beams, Discrete,
+    ::testing::Values(
+        DiscreteCase{"D1_linear", "D1", "D1_cut_aligned_linear.csv", ElementModel::linear, 0.0680647970285},
+        DiscreteCase{"D1_corotational", "D1", "D1_cut_aligned_corot.csv", ElementModel::corotational, 0.0568937677203},
+        DiscreteCase{"D2_linear", "uncut", "D2_uncut_linear.csv", ElementModel::linear, 0.0620093811079},
+        DiscreteCase{"D2_corotational", "uncut", "D2_uncut_corot.csv", ElementModel::corotational, 0.0536467723732}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST_P(Discrete, DisplacementsAgreeToNineDigits) {
+    const std::vector<Point> expected = displacements_of(GetParam());
+    if (expected.empty()) GTEST_SKIP() << "no reference displacements in " << reference_folder() / "discrete";
+    const runtime::Scene scene = scene_of(GetParam());
+    ASSERT_EQ(expected.size(), scene.mesh.nodes().size());
+    const auto scheduler = runtime::make_scheduler(runtime::default_scheduler, 2);
+    for (const ScalarMode scalar : {ScalarMode::double_precision, ScalarMode::mixed}) {
+        SCOPED_TRACE(to_string(scalar));
+        runtime::EquilibriumSettings settings;
+        settings.model = GetParam().model;
+        settings.scalar = scalar;
+        std::vector<Point> positions(scene.mesh.nodes().begin(), scene.mesh.nodes().end());
+        const auto report = find_equilibrium(scene, settings, *scheduler, positions);
+        EXPECT_EQ(report.end, runtime::EquilibriumEnd::converged) << report.explanation;
+        EXPECT_LE(report.residual, settings.tolerance);
+        EXPECT_LE(difference(scene.mesh.nodes(), positions, expected), 1e-9);
+        EXPECT_NEAR(report.elastic_energy, GetParam().energy, 1e-11);
+        RecordProperty(std::string(to_string(scalar)) + "_newton", report.newton_iterations);
+        RecordProperty(std::string(to_string(scalar)) + "_cg", report.conjugate_gradient_iterations);
+    }
+}
+
+// In float the strains are rounded to 1e-7, which the beam's slenderness amplifies: the answer says how far it came.
+TEST_P(Discrete, FloatSaysHowFarItCame) {
+    const std::vector<Point> expected = displacements_of(GetParam());
+    if (expected.empty()) GTEST_SKIP() << "no reference displacements in " << reference_folder() / "discrete";
+    const runtime::Scene scene = scene_of(GetParam());
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    runtime::EquilibriumSettings settings;
+    settings.model = GetParam().model;
+    settings.scalar = ScalarMode::single_precision;
+    std::vector<Point> positions(scene.mesh.nodes().begin(), scene.mesh.nodes().end());
+    const auto report = find_equilibrium(scene, settings, *scheduler, positions);
+    EXPECT_EQ(report.end, runtime::EquilibriumEnd::stagnated) << report.explanation;
+    EXPECT_GT(report.residual, settings.tolerance);
+    EXPECT_LT(report.residual, 1e-3);
+    EXPECT_EQ(report.load_factor, 1);
+    EXPECT_LE(difference(scene.mesh.nodes(), positions, expected), 1e-3);
+}
+
+}  // namespace
+}  // namespace lancet::test
