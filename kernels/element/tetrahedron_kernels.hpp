@@ -7,10 +7,12 @@
 
 namespace lancet::kernels {
 
-/// Where the rotated gradients of an element are kept between assembly and product.
+/// What is kept of an element's stiffness between its evaluation and product or assembly: rotated gradients, from which
+/// the blocks of an isotropic linear law follow, or the blocks themselves.
 enum class GradientLayout {
-    batches,  ///< [batch][9][lane], corners 1 to 3: what a matrix-free product streams
-    corners   ///< [4 * slot + corner] as x, y, z, lambda / mu: what assembly gathers
+    batches,        ///< rotated gradients [batch][9][lane], corners 1 to 3: what a matrix-free product streams
+    corners,        ///< rotated gradients [4 * slot + corner] as x, y, z, lambda / mu: what assembly gathers
+    element_blocks  ///< [batch][54][lane]: HyperelasticArguments::element_blocks, of any material and tangent
 };
 
 /// Where the buffer of a scatter plan is opened: own nodes and slots of each block.
@@ -34,7 +36,7 @@ struct TetrahedronArguments {
     Real* rotated;            ///< sqrt(V mu) R grad phi, in the layout below; nullptr: not stored
     Real* force;              ///< xyz_ buffer of the scatter plan, newtons; nullptr where no force is wanted
     double* energy;           ///< [block] joules; nullptr where it is not wanted
-    GradientLayout layout;
+    GradientLayout layout;    ///< batches or corners
     RotationMethod method;
     int rotation_steps;
     bool update_rotation;  ///< false: the rotated gradients are kept, and force and energy follow from them

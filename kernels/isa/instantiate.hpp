@@ -2,6 +2,7 @@
 
 // Included only by the files of the instruction sets (scalar.cpp, sse2.cpp, ...): makes their kernels.
 
+#include "lancet/kernels/element/hyperelastic_kernels_simd.hpp"
 #include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
 #include "lancet/kernels/isa/instances.hpp"
 #include "lancet/kernels/operator/coarse_kernels_simd.hpp"
@@ -22,6 +23,7 @@ constexpr KernelSet<Real> make_kernel_set(InstructionSet instruction_set) {
             .width = P::width,
             .rotation = make_rotation_kernels<P>(),
             .tetrahedron = make_tetrahedron_kernels<P>(),
+            .hyperelastic = make_hyperelastic_kernels<P>(),
             .matrix = make_operator_kernels<P>(),
             .diagonal = make_diagonal_kernels<P>(),
             .coarse = make_coarse_kernels<P>(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lancet/kernels/element/hyperelastic_kernels.hpp"
 #include "lancet/kernels/element/tetrahedron_kernels.hpp"
 #include "lancet/kernels/isa/instruction_set.hpp"
 #include "lancet/kernels/operator/coarse_kernels.hpp"
@@ -18,7 +19,8 @@ struct KernelSet {
     InstructionSet instruction_set;
     int width;  ///< lanes of a batch
     RotationKernels<Real> rotation;
-    TetrahedronKernels<Real> tetrahedron;
+    TetrahedronKernels<Real> tetrahedron;    ///< corotational and linear elements: the fast path
+    HyperelasticKernels<Real> hyperelastic;  ///< elements of every material
     OperatorKernels<Real> matrix;
     DiagonalKernels<Real> diagonal;
     CoarseKernels<Real> coarse;

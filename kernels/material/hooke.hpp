@@ -1,15 +1,8 @@
 #pragma once
 
-#include "lancet/kernels/rotation/matrix3.hpp"
-#include "lancet/kernels/simd/nodes.hpp"
+#include "lancet/kernels/rotation/symmetric3.hpp"
 
 namespace lancet::kernels {
-
-/// A symmetric 3 x 3 matrix in every lane.
-template <class P>
-struct Symmetric3 {
-    P xx, yy, zz, xy, xz, yz;
-};
 
 /// Hooke's law for an isotropic material, divided by mu: G + G^T + (lambda / mu) tr(G) 1, for a displacement gradient
 /// G.
@@ -47,12 +40,6 @@ LANCET_INLINE P corotational_energy(const Matrix3<P>& f, const Matrix3<P>& r, P 
         }
     }
     return fma(P(typename P::Real(0.5)) * lambda_over_mu, trace * trace, square);
-}
-
-template <class P>
-LANCET_INLINE Vector3<P> multiply(const Symmetric3<P>& s, const Vector3<P>& v) {
-    return {fma(s.xx, v.x, fma(s.xy, v.y, s.xz * v.z)), fma(s.xy, v.x, fma(s.yy, v.y, s.yz * v.z)),
-            fma(s.xz, v.x, fma(s.yz, v.y, s.zz * v.z))};
 }
 
 }  // namespace lancet::kernels

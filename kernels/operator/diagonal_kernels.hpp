@@ -17,8 +17,8 @@ template <class Real>
 struct ElementDiagonalArguments {
     const std::int32_t* block_batch_begin;
     const std::int32_t* targets;
-    const Real* rest;
-    const Real* rotated;       ///< in the layout below
+    const Real* rest;          ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
+    const Real* rotated;       ///< rotated gradients or element blocks, in the layout below
     const Real* element_mass;  ///< [batch][lane] for a consistent mass; nullptr for a lumped one, which is nodal
     Real* buffer;              ///< xyz_ buffer of the elements' scatter plan, added to
     Real stiffness_factor;
@@ -38,9 +38,10 @@ struct InvertDiagonalArguments {
     bool blocks;         ///< true: 3 x 3 blocks; false: their diagonals alone (Jacobi)
 };
 
-/// Kernels of the diagonal blocks: K_ii = V ((lambda + mu) b'_i b'_i^T + mu |b'_i|^2 1) for rotated gradients b'. As a
-/// nodal vector carries three numbers, `scatter` and merging run for the axial part, `keep` stores it in `inverse`, and
-/// where blocks are wanted `scatter` runs again for the mixed part, before `invert`.
+/// Kernels of the diagonal blocks: K_ii = V ((lambda + mu) b'_i b'_i^T + mu |b'_i|^2 1) for rotated gradients b', minus
+/// the sum of the blocks of the edges at i for element blocks. As a nodal vector carries three numbers, `scatter` and
+/// merging run for the axial part, `keep` stores it in `inverse`, and where blocks are wanted `scatter` runs again for
+/// the mixed part, before `invert`.
 template <class Real>
 struct DiagonalKernels {
     void (*scatter)(const ElementDiagonalArguments<Real>& arguments, int block);

@@ -2,8 +2,44 @@
 
 #include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
 #include "lancet/kernels/operator/diagonal_kernels.hpp"
+#include "lancet/kernels/operator/element_blocks_simd.hpp"
 
 namespace lancet::kernels {
+
+/// The part that is asked for of K_ii of the four corners of a batch, times a factor, with a mass on the axes.
+template <class P>
+LANCET_INLINE void diagonal_shares(const ElementDiagonalArguments<typename P::Real>& a, std::int64_t batch, P factor,
+                                   P mass, Vector3<P> (&share)[4]) {
+    using Real = typename P::Real;
+    constexpr int W = P::width;
+    if (a.layout == GradientLayout::element_blocks) {
+        Symmetric3<P> diagonal[4];
+        load_diagonal_blocks(a.rotated, batch, diagonal);
+        for (int corner = 0; corner < 4; ++corner) {
+            const Symmetric3<P>& k = diagonal[corner];
+            if (a.part == DiagonalPart::axial) {
+                share[corner] = {fma(factor, k.xx, mass), fma(factor, k.yy, mass), fma(factor, k.zz, mass)};
+            } else {
+                share[corner] = {factor * k.xy, factor * k.xz, factor * k.yz};
+            }
+        }
+        return;
+    }
+    const Corners<P> b = a.layout == GradientLayout::batches ? load_corners<P>(a.rotated + batch * 9 * W)
+                                                             : load_gradient_corners<P>(a.rotated + batch * 16 * W);
+    const Vector3<P> total = b.sum();
+    const Vector3<P> all[4] = {{-total.x, -total.y, -total.z}, b.of[0], b.of[1], b.of[2]};
+    const P dyad = factor * (P(Real(1)) + P::load(a.rest + (batch * ElementBatches<Real>::rest_entries + 10) * W));
+    for (int corner = 0; corner < 4; ++corner) {
+        const Vector3<P>& g = all[corner];
+        if (a.part == DiagonalPart::axial) {
+            const P common = fma(factor, fma(g.z, g.z, fma(g.y, g.y, g.x * g.x)), mass);
+            share[corner] = {fma(dyad * g.x, g.x, common), fma(dyad * g.y, g.y, common), fma(dyad * g.z, g.z, common)};
+        } else {
+            share[corner] = {dyad * g.x * g.y, dyad * g.x * g.z, dyad * g.y * g.z};
+        }
+    }
+}
 
 template <class P>
 void scatter_diagonal(const ElementDiagonalArguments<typename P::Real>& a, int block) {
@@ -11,29 +47,18 @@ void scatter_diagonal(const ElementDiagonalArguments<typename P::Real>& a, int b
     constexpr int W = P::width;
     const P factor(a.stiffness_factor);
     for (std::int64_t batch = a.block_batch_begin[block]; batch < a.block_batch_begin[block + 1]; ++batch) {
-        const Corners<P> b = a.layout == GradientLayout::batches ? load_corners<P>(a.rotated + batch * 9 * W)
-                                                                 : load_gradient_corners<P>(a.rotated + batch * 16 * W);
-        const Vector3<P> total = b.sum();
-        const Vector3<P> all[4] = {{-total.x, -total.y, -total.z}, b.of[0], b.of[1], b.of[2]};
-        const P dyad = factor * (P(Real(1)) + P::load(a.rest + (batch * ElementBatches<Real>::rest_entries + 10) * W));
         // int rho phi_i^2 = rho V / 10 is the nodal share rho V / 4 less 3/20.
         const P mass = a.element_mass == nullptr
                            ? P(Real(0))
                            : P(Real(-3.0 / 20) * a.mass_factor) * P::load(a.element_mass + batch * W);
+        Vector3<P> share[4];
+        diagonal_shares(a, batch, factor, mass, share);
         for (int corner = 0; corner < 4; ++corner) {
-            const Vector3<P>& g = all[corner];
-            Vector3<P> share;
-            if (a.part == DiagonalPart::axial) {
-                const P common = fma(factor, fma(g.z, g.z, fma(g.y, g.y, g.x * g.x)), mass);
-                share = {fma(dyad * g.x, g.x, common), fma(dyad * g.y, g.y, common), fma(dyad * g.z, g.z, common)};
-            } else {
-                share = {dyad * g.x * g.y, dyad * g.x * g.z, dyad * g.y * g.z};
-            }
             const std::int32_t* targets = a.targets + (batch * 4 + corner) * W;
             if (a.exclusive_slots) {
-                store_nodes(a.buffer, targets, share);
+                store_nodes(a.buffer, targets, share[corner]);
             } else {
-                add_to_nodes(a.buffer, targets, share);
+                add_to_nodes(a.buffer, targets, share[corner]);
             }
         }
     }

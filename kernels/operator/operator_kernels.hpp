@@ -32,17 +32,18 @@ struct OpenArguments {
     bool clear_slots;
 };
 
-/// Rotated elements as a matrix: K = sum over elements (mu, lambda folded into the gradients).
+/// The elements as a matrix: K = sum over elements, from rotated gradients (mu, lambda folded in) or element blocks.
 template <class Real>
 struct MatrixFreeArguments {
     const std::int32_t* block_batch_begin;
     const std::int32_t* nodes;
     const std::int32_t* targets;
-    const Real* rest;     ///< as ElementBatches::rest: lambda / mu is read
-    const Real* rotated;  ///< GradientLayout::batches
+    const Real* rest;     ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
+    const Real* rotated;  ///< rotated gradients or element blocks, in the layout below
     const Real*
         element_mass;  ///< [batch][lane] rho V / 20 times the mass factor for a consistent mass; nullptr: lumped
     Real stiffness_factor;
+    GradientLayout layout = GradientLayout::batches;  ///< batches or element_blocks
 };
 
 /// Sliced rows of 3 x 3 blocks.
@@ -57,14 +58,15 @@ struct RowArguments {
     const Real* values;  ///< [entry][row-major 3 x 3 entry][lane]
 };
 
-/// Gathers the blocks of a pattern from rotated gradients.
+/// Gathers the blocks of a pattern from rotated gradients or element blocks.
 template <class Real>
 struct AssemblyArguments {
     const std::int32_t* block_chunk_begin;
     const std::int32_t* chunk_entry_begin;
     const std::int32_t* incidence_begin;
     const std::int32_t* incidence;
-    const Real* rotated;     ///< in the layout below, with a batch of zeros behind the last
+    const Real* rotated;     ///< rotated gradients or element blocks in the layout below, with a batch of zeros behind
+                             ///< the last
     const Real* rest;        ///< as ElementBatches::rest; read only for GradientLayout::batches
     const Real* entry_mass;  ///< [entry][lane] added to the diagonal of each block; nullptr: none
     Real* values;            ///< [entry][9][lane]
@@ -84,7 +86,7 @@ struct OperatorKernels {
     void (*edge_blocks)(const ProductArguments<Real>& product, const RowArguments<Real>& matrix, int block);
     /// y_i += sum_j A_ij z_j.
     void (*block_rows)(const ProductArguments<Real>& product, const RowArguments<Real>& matrix, int block);
-    /// K_ij = sum over elements of V (lambda b'_i b'_j^T + mu b'_j b'_i^T + mu (b'_i . b'_j) 1).
+    /// K_ij = sum over elements of V (lambda b'_i b'_j^T + mu b'_j b'_i^T + mu (b'_i . b'_j) 1), or of their blocks.
     void (*assemble)(const AssemblyArguments<Real>& arguments, int block);
 };
 

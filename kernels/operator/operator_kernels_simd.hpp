@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lancet/kernels/element/tetrahedron_kernels_simd.hpp"
+#include "lancet/kernels/operator/element_blocks_simd.hpp"
 #include "lancet/kernels/operator/operator_kernels.hpp"
 
 namespace lancet::kernels {
@@ -49,7 +50,34 @@ void merge_block(const std::int32_t* merge_begin, const ScatterPlan::Merge* merg
     }
 }
 
-template <class P, bool ConsistentMass>
+/// K d of a batch of elements on corners 1, 2, 3, times a factor, from the differences d to corner 0; adds d . K d to
+/// `quadratic`.
+template <class P, GradientLayout layout>
+LANCET_INLINE Corners<P> multiply_elements(const MatrixFreeArguments<typename P::Real>& matrix, std::int64_t batch,
+                                           P factor, const Corners<P>& d, P& quadratic) {
+    using Real = typename P::Real;
+    constexpr int W = P::width;
+    Corners<P> f;
+    if constexpr (layout == GradientLayout::element_blocks) {
+        f = multiply_element_blocks(matrix.rotated, batch, d);
+        for (int i = 0; i < 3; ++i) {
+            f.of[i] = {factor * f.of[i].x, factor * f.of[i].y, factor * f.of[i].z};
+            quadratic += dot(f.of[i], d.of[i]);
+        }
+    } else {
+        const Corners<P> b = load_corners<P>(matrix.rotated + batch * 9 * W);
+        const Matrix3<P> g = gradient(d, b);
+        const P lambda_over_mu = P::load(matrix.rest + batch * ElementBatches<Real>::rest_entries * W + 10 * W);
+        Symmetric3<P> stress = hooke_stress(g, lambda_over_mu);
+        stress = {factor * stress.xx, factor * stress.yy, factor * stress.zz,
+                  factor * stress.xy, factor * stress.xz, factor * stress.yz};
+        quadratic += P(Real(2)) * hooke_energy(g, stress);
+        for (int j = 0; j < 3; ++j) f.of[j] = multiply(stress, b.of[j]);
+    }
+    return f;
+}
+
+template <class P, GradientLayout layout, bool ConsistentMass>
 LANCET_INLINE void matrix_free_loop(const ProductArguments<typename P::Real>& product,
                                     const MatrixFreeArguments<typename P::Real>& matrix, int block) {
     using Real = typename P::Real;
@@ -61,15 +89,7 @@ LANCET_INLINE void matrix_free_loop(const ProductArguments<typename P::Real>& pr
         const Vector3<P> origin = load_nodes<P>(product.z, nodes);
         Corners<P> d;
         for (int j = 0; j < 3; ++j) d.of[j] = load_nodes<P>(product.z, nodes + (j + 1) * W) - origin;
-        const Corners<P> b = load_corners<P>(matrix.rotated + batch * 9 * W);
-        const Matrix3<P> g = gradient(d, b);
-        const P lambda_over_mu = P::load(matrix.rest + batch * ElementBatches<Real>::rest_entries * W + 10 * W);
-        Symmetric3<P> stress = hooke_stress(g, lambda_over_mu);
-        stress = {factor * stress.xx, factor * stress.yy, factor * stress.zz,
-                  factor * stress.xy, factor * stress.xz, factor * stress.yz};
-        quadratic += P(Real(2)) * hooke_energy(g, stress);
-        Corners<P> f;
-        for (int j = 0; j < 3; ++j) f.of[j] = multiply(stress, b.of[j]);
+        Corners<P> f = multiply_elements<P, layout>(matrix, batch, factor, d, quadratic);
         if constexpr (ConsistentMass) {
             // The consistent mass is its row sum on the diagonal, which open_block adds, and m (z_j - z_i) for each
             // pair of corners: on corner i, m (sum_j d_j - 4 d_i).
@@ -88,13 +108,23 @@ LANCET_INLINE void matrix_free_loop(const ProductArguments<typename P::Real>& pr
     product.quadratic[block] += static_cast<double>(sum(quadratic));
 }
 
+template <class P, GradientLayout layout>
+void matrix_free_with(const ProductArguments<typename P::Real>& product,
+                      const MatrixFreeArguments<typename P::Real>& matrix, int block) {
+    if (matrix.element_mass != nullptr) {
+        matrix_free_loop<P, layout, true>(product, matrix, block);
+    } else {
+        matrix_free_loop<P, layout, false>(product, matrix, block);
+    }
+}
+
 template <class P>
 void matrix_free(const ProductArguments<typename P::Real>& product, const MatrixFreeArguments<typename P::Real>& matrix,
                  int block) {
-    if (matrix.element_mass != nullptr) {
-        matrix_free_loop<P, true>(product, matrix, block);
+    if (matrix.layout == GradientLayout::element_blocks) {
+        matrix_free_with<P, GradientLayout::element_blocks>(product, matrix, block);
     } else {
-        matrix_free_loop<P, false>(product, matrix, block);
+        matrix_free_with<P, GradientLayout::batches>(product, matrix, block);
     }
 }
 
@@ -165,12 +195,12 @@ struct CornerGradients {
     P lambda_over_mu;
 };
 
-template <class P, bool InBatches>
+template <class P, GradientLayout layout>
 LANCET_INLINE CornerGradients<P> load_gradients(const AssemblyArguments<typename P::Real>& a,
                                                 const std::int32_t* corners) {
     using Real = typename P::Real;
     constexpr int W = P::width;
-    if constexpr (!InBatches) {
+    if constexpr (layout == GradientLayout::corners) {
         Quad<typename P::Isa, Real> quads[W];
         for (int lane = 0; lane < W; ++lane) {
             quads[lane] = Quad<typename P::Isa, Real>::load(a.rotated + static_cast<std::int64_t>(corners[lane]));
@@ -195,7 +225,23 @@ LANCET_INLINE CornerGradients<P> load_gradients(const AssemblyArguments<typename
     }
 }
 
-template <class P, bool InBatches>
+/// Adds to k the blocks V (lambda b'_i b'_j^T + mu b'_j b'_i^T + mu (b'_i . b'_j) 1) of one element per lane.
+template <class P, GradientLayout layout>
+LANCET_INLINE void add_gradient_blocks(const AssemblyArguments<typename P::Real>& a, const std::int32_t* row_corners,
+                                       const std::int32_t* column_corners, P (&k)[3][3]) {
+    const CornerGradients<P> of_row = load_gradients<P, layout>(a, row_corners);
+    const Vector3<P> u = of_row.b, v = load_gradients<P, layout>(a, column_corners).b;
+    const P lambda = of_row.lambda_over_mu;
+    const P bi[3] = {u.x, u.y, u.z}, bj[3] = {v.x, v.y, v.z};
+    const P trace = dot(u, v);
+    for (int i = 0; i < 3; ++i) {
+        const P scaled = lambda * bi[i];
+        for (int j = 0; j < 3; ++j) k[i][j] = fma(scaled, bj[j], fma(bj[i], bi[j], k[i][j]));
+        k[i][i] += trace;
+    }
+}
+
+template <class P, GradientLayout layout>
 LANCET_INLINE void assemble_loop(const AssemblyArguments<typename P::Real>& a, int block) {
     using Real = typename P::Real;
     constexpr int W = P::width;
@@ -208,15 +254,10 @@ LANCET_INLINE void assemble_loop(const AssemblyArguments<typename P::Real>& a, i
         }
         for (std::int64_t n = a.incidence_begin[entry]; n < a.incidence_begin[entry + 1]; ++n) {
             const std::int32_t* row_corners = a.incidence + 2 * n * W;
-            const CornerGradients<P> of_row = load_gradients<P, InBatches>(a, row_corners);
-            const Vector3<P> u = of_row.b, v = load_gradients<P, InBatches>(a, row_corners + W).b;
-            const P lambda = of_row.lambda_over_mu;
-            const P bi[3] = {u.x, u.y, u.z}, bj[3] = {v.x, v.y, v.z};
-            const P trace = dot(u, v);
-            for (int i = 0; i < 3; ++i) {
-                const P scaled = lambda * bi[i];
-                for (int j = 0; j < 3; ++j) k[i][j] = fma(scaled, bj[j], fma(bj[i], bi[j], k[i][j]));
-                k[i][i] += trace;
+            if constexpr (layout == GradientLayout::element_blocks) {
+                add_incident_blocks(a.rotated, row_corners, row_corners + W, k);
+            } else {
+                add_gradient_blocks<P, layout>(a, row_corners, row_corners + W, k);
             }
         }
         const P mass = a.entry_mass != nullptr ? P::load(a.entry_mass + entry * W) : P(Real(0));
@@ -232,10 +273,13 @@ LANCET_INLINE void assemble_loop(const AssemblyArguments<typename P::Real>& a, i
 
 template <class P>
 void assemble(const AssemblyArguments<typename P::Real>& a, int block) {
-    if (a.layout == GradientLayout::batches) {
-        assemble_loop<P, true>(a, block);
-    } else {
-        assemble_loop<P, false>(a, block);
+    switch (a.layout) {
+        case GradientLayout::batches:
+            return assemble_loop<P, GradientLayout::batches>(a, block);
+        case GradientLayout::corners:
+            return assemble_loop<P, GradientLayout::corners>(a, block);
+        case GradientLayout::element_blocks:
+            return assemble_loop<P, GradientLayout::element_blocks>(a, block);
     }
 }
 
