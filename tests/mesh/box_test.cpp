@@ -74,7 +74,8 @@ TEST_P(BoxSplit, NumbersNodesAlongXFirst) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(FiveAndSix, BoxSplit, testing::Values(Split::five, Split::six));
+INSTANTIATE_TEST_SUITE_P(FiveAndSix, BoxSplit, testing::Values(Split::five, Split::six),
+                         [](const auto& instance) { return instance.param == Split::five ? "five" : "six"; });
 
 TEST(Box, HasTheBarsTetrahedraInTheMiddleOfCells) {
     const TetMesh bar = lancet::mesh::box({.cells = {40, 8, 8}, .size = {4, 0.8, 0.8}});

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <string>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -214,11 +215,25 @@ TEST_P(OrderKind, AcceptsTheEmptyMesh) {
     EXPECT_TRUE(lancet::mesh::order(TetMesh(), GetParam()).node_of_new.empty());
 }
 
+std::string kind_name(const testing::TestParamInfo<OrderingKind>& instance) {
+    switch (instance.param) {
+        case OrderingKind::none:
+            return "none";
+        case OrderingKind::hilbert:
+            return "hilbert";
+        case OrderingKind::reverse_cuthill_mckee:
+            return "reverse_cuthill_mckee";
+    }
+    return "unknown";
+}
+
 INSTANTIATE_TEST_SUITE_P(All, OrderKind,
                          testing::Values(OrderingKind::none, OrderingKind::hilbert,
-                                         OrderingKind::reverse_cuthill_mckee));
+                                         OrderingKind::reverse_cuthill_mckee),
+                         kind_name);
 
-INSTANTIATE_TEST_SUITE_P(All, SortingKind, testing::Values(OrderingKind::hilbert, OrderingKind::reverse_cuthill_mckee));
+INSTANTIATE_TEST_SUITE_P(All, SortingKind, testing::Values(OrderingKind::hilbert, OrderingKind::reverse_cuthill_mckee),
+                         kind_name);
 
 TEST(Order, NoneKeepsEverythingInItsPlace) {
     const TetMesh mesh = shuffled(two_boxes(), 4);
