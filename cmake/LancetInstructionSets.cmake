@@ -25,13 +25,14 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND lancet_flags_avx512 -Wno-uninitialized -Wno-maybe-uninitialized)
 endif()
 
-# Kernels are one deep nest of inlined functions: with a check of each `this` for null and of each scope of a temporary
-# the compiler takes minutes and gigabytes for a file. Bounds, alignment, overflow and shifts stay checked.
+# Kernels are one deep nest of inlined functions, where checks of every `this`, of every scope of a temporary and of the
+# alignment of every load cost the compiler many minutes and gigabytes. Bounds, overflow, shifts and conversions stay
+# checked, and so does every access to memory.
 if(LANCET_SANITIZE)
   foreach(isa IN LISTS LANCET_ISA ITEMS scalar)
-    list(APPEND lancet_flags_${isa} -O2 -g1)
+    list(APPEND lancet_flags_${isa} -O1)
     if(LANCET_SANITIZE MATCHES "undefined")
-      list(APPEND lancet_flags_${isa} -fno-sanitize=null,object-size,vptr)
+      list(APPEND lancet_flags_${isa} -fno-sanitize=null,object-size,vptr,alignment)
     endif()
     if(LANCET_SANITIZE MATCHES "address")
       list(APPEND lancet_flags_${isa} -fno-sanitize-address-use-after-scope)

@@ -19,6 +19,8 @@ function(lancet_settings target)
     target_compile_options(${target} PRIVATE -fsanitize=${LANCET_SANITIZE} -fno-sanitize-recover=all
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PRIVATE -fsanitize=${LANCET_SANITIZE})
+    # Checks the indices of std::span, std::vector and std::array, which need not leave the memory they lie in.
+    target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)
   endif()
 endfunction()
 

@@ -25,9 +25,15 @@ void* counted(std::size_t bytes, std::size_t alignment) {
     return memory;
 }
 
+// NOLINTBEGIN(cppcoreguidelines-no-malloc, cppcoreguidelines-owning-memory): this is where memory comes from
+
+// Never inline: beside a new that is not inline either, the compiler takes the free for a mismatch.
+[[gnu::noinline]] void released(void* memory) noexcept {
+    std::free(memory);
+}
+
 }  // namespace
 
-// NOLINTBEGIN(cppcoreguidelines-no-malloc, cppcoreguidelines-owning-memory): this is where memory comes from
 void* operator new(std::size_t bytes) {
     return counted(bytes, alignof(std::max_align_t));
 }
@@ -41,28 +47,28 @@ void* operator new[](std::size_t bytes, std::align_val_t alignment) {
     return counted(bytes, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete[](void* memory) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete[](void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    released(memory);
 }
 // NOLINTEND(cppcoreguidelines-no-malloc, cppcoreguidelines-owning-memory)
 
