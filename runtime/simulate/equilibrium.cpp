@@ -36,6 +36,7 @@ void validate(const EquilibriumSettings& settings) {
     require(settings.load_steps >= 1, "at least one load step is needed");
     require(settings.smallest_load_step > 0 && settings.smallest_load_step <= 1,
             "the smallest load step must be in (0, 1]");
+    kernels::require_tangent(settings.model, settings.tangent);
     require(settings.rotation.steps >= 1, "at least one step of the rotation method is needed");
     kernels::require(settings.instruction_set);
 }
@@ -246,7 +247,7 @@ class Search {
             kernels,
             kernels::make_element_batches<Scalar>(scene().mesh.nodes(), scene().mesh.tetrahedra(), materials.of_element,
                                                   materials.parameters, numbering_, settings_.scatter, kernels.width),
-            numbering_, gradient_layout(settings_.matrix), settings_.rotation);
+            numbering_, gradient_layout(settings_.matrix, law()), settings_.rotation, law());
     }
 
     ElasticElements<Inner>& inner_elements() {
@@ -279,6 +280,7 @@ class Search {
         return constraints;
     }
 
+    ElasticLaw law() const { return {.model = settings_.model, .tangent = settings_.tangent}; }
     bool is_linear() const { return settings_.model == ElementModel::linear; }
 
     /// Sum over the free nodes of value(i) for the places i of their numbers.

@@ -10,9 +10,11 @@
 
 namespace lancet::runtime {
 
-/// How a static equilibrium is looked for. The defaults are those of a verification: double, to 1e-10.
+/// How a static equilibrium is looked for. The defaults are those of a verification: all in double, the
+/// exact tangent.
 struct EquilibriumSettings {
     ElementModel model = ElementModel::corotational;
+    TangentKind tangent = TangentKind::exact;
     /// single_precision: all in float. mixed: residual and energy in double, tangent and linear solves in float, which
     /// for the linear model is iterative refinement to double accuracy. double_precision: all in double.
     ScalarMode scalar = ScalarMode::double_precision;
@@ -21,7 +23,7 @@ struct EquilibriumSettings {
     kernels::ScatterStrategy scatter = kernels::ScatterStrategy::private_copies;
     RotationSettings rotation{};
     PreconditionerKind preconditioner = PreconditionerKind::coarse;
-    double tolerance = 1e-10;                  ///< of the residual against the loads, or the reactions where none are
+    double tolerance = 1e-9;                   ///< of the residual against the loads, or the reactions where none are
     int newton_iterations = 50;                ///< at most, for each load step
     int conjugate_gradient_iterations = 5000;  ///< at most, for each linear solve
     int load_steps = 1;                        ///< how many to begin with; a step that fails is halved

@@ -1,5 +1,6 @@
 #include "lancet/runtime/solve/elastic_elements.hpp"
 
+#include "lancet/kernels/error.hpp"
 #include "lancet/runtime/schedule/ordered_sum.hpp"
 #include "lancet/runtime/solve/block_loop.hpp"
 
@@ -8,21 +9,60 @@ namespace lancet::runtime {
 using kernels::GradientLayout;
 using kernels::ScatterStrategy;
 
+namespace {
+
+std::size_t numbers_per_element(GradientLayout layout) {
+    switch (layout) {
+        case GradientLayout::batches:
+            return 9;
+        case GradientLayout::corners:
+            return 16;
+        default:
+            return kernels::element_block_entries;
+    }
+}
+
+}  // namespace
+
 template <class Real>
 ElasticElements<Real>::ElasticElements(const kernels::KernelSet<Real>& kernels, kernels::ElementBatches<Real> batches,
                                        const kernels::NodeNumbering& numbering, GradientLayout layout,
-                                       const RotationSettings& rotation)
+                                       const RotationSettings& rotation, const ElasticLaw& law)
     : kernels_(&kernels),
       numbering_(&numbering),
       batches_(std::move(batches)),
       layout_(layout),
       rotation_(rotation),
+      law_(law),
       quaternion_(static_cast<std::size_t>(batches_.slots()) * 4),
       // One batch of zeros behind the last is what incidences of nothing read.
       rotated_((static_cast<std::size_t>(batches_.slots()) + static_cast<std::size_t>(batches_.width)) *
-               (layout == GradientLayout::batches ? 9 : 16)),
+               numbers_per_element(layout)),
       force_(static_cast<std::size_t>(batches_.scatter.buffer_size()) * 4),
-      energy_(static_cast<std::size_t>(numbering.blocks())) {}
+      energy_(static_cast<std::size_t>(numbering.blocks())) {
+    kernels::require_tangent(law.model, law.tangent);
+    if (law.is_rotated() == (layout == GradientLayout::element_blocks)) {
+        throw Error("elements: the layout does not suit the law; see gradient_layout");
+    }
+}
+
+template <class Real>
+kernels::HyperelasticArguments<Real> ElasticElements<Real>::hyperelastic_arguments(const double* positions,
+                                                                                   const Wanted& wanted) {
+    return {.block_batch_begin = batches_.block_batch_begin.data(),
+            .nodes = batches_.nodes.data(),
+            .targets = batches_.targets.data(),
+            .rest = batches_.rest.data(),
+            .positions = positions,
+            .quaternion = quaternion_.data(),
+            .force = wanted.force ? force_.data() : nullptr,
+            .energy = wanted.energy ? energy_.data() : nullptr,
+            .element_blocks = rotated_.data(),
+            .model = law_.model,
+            .tangent = law_.tangent,
+            .rotation_steps = rotation_.steps,
+            .exclusive_slots = batches_.scatter.strategy() == ScatterStrategy::node_gather};
+}
 
 template <class Real>
 kernels::TetrahedronArguments<Real> ElasticElements<Real>::arguments(const double* positions, const Wanted& wanted) {
@@ -46,6 +86,10 @@ template <class Real>
 void ElasticElements<Real>::reset(Scheduler& scheduler, const double* positions) {
     const auto width = static_cast<std::size_t>(batches_.width);
     for (std::size_t i = 0; i < quaternion_.size(); ++i) quaternion_[i] = (i / width) % 4 == 0 ? Real(1) : Real(0);
+    if (!law_.is_rotated()) {
+        evaluate(scheduler, positions, {.rotation = true, .force = false});
+        return;
+    }
     auto gradients_at_rest = arguments(positions, {.rotation = true, .force = false, .energy = false});
     gradients_at_rest.method = kernels::RotationMethod::quaternion;
     gradients_at_rest.rotation_steps = 0;
@@ -76,6 +120,15 @@ void ElasticElements<Real>::scatter(Scheduler& scheduler, bool is_wanted, const 
 
 template <class Real>
 double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* positions, const Wanted& wanted) {
+    if (!law_.is_rotated()) {
+        const auto call = hyperelastic_arguments(positions, wanted);
+        const bool wants_tangent = wanted.rotation && wanted.keep_gradients;
+        scatter(scheduler, wanted.force, [&](int block) {
+            if (wanted.force || wanted.energy) kernels_->hyperelastic.evaluate(call, block);
+            if (wants_tangent) kernels_->hyperelastic.tangent(call, block);
+        });
+        return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
+    }
     const auto call = arguments(positions, wanted);
     scatter(scheduler, wanted.force, [&](int block) { kernels_->tetrahedron.elastic(call, block); });
     return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;

@@ -16,23 +16,42 @@ struct RotationSettings {
     int steps = 1;  ///< Newton steps of the warm-started methods
 };
 
+/// What an element's energy is a function of.
+using ElementModel = kernels::MaterialModel;
+using kernels::TangentKind;
+
+/// The law of the elements and which derivative of it serves as stiffness. The rotated tangent is the cheapest; the
+/// exact one makes Newton's method converge in second order, and shows a loss of stability.
+struct ElasticLaw {
+    ElementModel model = ElementModel::corotational;
+    TangentKind tangent = TangentKind::rotated;
+
+    /// True where rotated gradients say all that operators need: the linear model and the rotated tangent.
+    constexpr bool is_rotated() const noexcept {
+        return model == ElementModel::linear || tangent == TangentKind::rotated;
+    }
+};
+
 /// The elements of a body with their state: rotations, rotated gradients, elastic force. `Real` is the scalar of all
 /// of them; positions are double.
+///
+/// Linear and corotational elements with the rotated tangent keep rotated gradients, from which operators make what
+/// they need: the fast path. Every other law keeps the edge blocks of each element.
 template <class Real>
 class ElasticElements {
   public:
     /// What an evaluation computes.
     struct Wanted {
-        bool rotation = true;  ///< update the rotations and rotated gradients
+        bool rotation = true;  ///< update the rotations, and the rotated gradients or element blocks
         bool force = true;
         bool energy = false;
-        bool keep_gradients =
-            true;  ///< store the rotated gradients; false spares the memory traffic where only energy counts
+        bool keep_gradients = true;  ///< store the rotated gradients or element blocks; false spares what only
+                                     ///< operators need
     };
 
     ElasticElements(const kernels::KernelSet<Real>& kernels, kernels::ElementBatches<Real> batches,
                     const kernels::NodeNumbering& numbering, kernels::GradientLayout layout,
-                    const RotationSettings& rotation);
+                    const RotationSettings& rotation, const ElasticLaw& law = {});
 
     /// Sets every rotation to the identity and the gradients to those at rest: the linear model, and the start of the
     /// corotational one. `positions` are those at rest.
@@ -63,6 +82,7 @@ class ElasticElements {
     const kernels::KernelSet<Real>& kernels() const noexcept { return *kernels_; }
     const kernels::NodeNumbering& numbering() const noexcept { return *numbering_; }
     kernels::GradientLayout layout() const noexcept { return layout_; }
+    const ElasticLaw& law() const noexcept { return law_; }
     const Real* rotated() const noexcept { return rotated_.data(); }
     /// Unit quaternions [batch][w, x, y, z][lane].
     std::span<Real> quaternions() noexcept { return quaternion_; }
@@ -73,6 +93,7 @@ class ElasticElements {
 
   private:
     kernels::TetrahedronArguments<Real> arguments(const double* positions, const Wanted& wanted);
+    kernels::HyperelasticArguments<Real> hyperelastic_arguments(const double* positions, const Wanted& wanted);
     /// Adds the elements' shares, add(block), to the force buffer, which is cleared first where `is_wanted`.
     template <class Add>
     void scatter(Scheduler& scheduler, bool is_wanted, const Add& add);
@@ -82,6 +103,7 @@ class ElasticElements {
     kernels::ElementBatches<Real> batches_;
     kernels::GradientLayout layout_;
     RotationSettings rotation_;
+    ElasticLaw law_;
     kernels::AlignedVector<Real> quaternion_;
     kernels::AlignedVector<Real> rotated_;
     kernels::AlignedVector<Real> force_;

@@ -100,9 +100,8 @@ std::size_t Operator<Real>::bytes() const noexcept {
 template <class Real>
 std::unique_ptr<Operator<Real>> make_operator(OperatorKind kind, ElasticElements<Real>& elements,
                                               const OperatorDefinition& definition) {
-    if (elements.layout() != gradient_layout(kind)) {
-        throw Error("operator " + std::string(to_string(kind)) +
-                    ": the rotated gradients of the elements are not in the layout that it reads");
+    if (elements.layout() != gradient_layout(kind, elements.law())) {
+        throw Error("operator " + std::string(to_string(kind)) + ": the elements are not in the layout that it reads");
     }
     if (kind == OperatorKind::matrix_free) return std::make_unique<MatrixFree<Real>>(elements, definition);
     return std::make_unique<RowOperator<Real>>(kind, elements, definition);

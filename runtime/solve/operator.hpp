@@ -48,7 +48,7 @@ class Operator {
     virtual ~Operator() = default;
 
     virtual OperatorKind kind() const noexcept = 0;
-    /// Takes up the rotated gradients of the elements.
+    /// Takes up the rotated gradients or blocks of the elements.
     virtual void assemble(Scheduler& scheduler, const Factors& factors) = 0;
     /// Fills buffer() with A z up to merging and returns z . A z.
     double product(Scheduler& scheduler, const Real* z);
@@ -91,14 +91,15 @@ struct OperatorDefinition {
     kernels::ScatterStrategy scatter = kernels::ScatterStrategy::private_copies;
 };
 
-/// Builds an operator; `elements` must outlive it. The layout of the elements' rotated gradients must suit the kind:
+/// Builds an operator; `elements` must outlive it. The layout of the elements must suit the kind:
 /// see gradient_layout.
 template <class Real>
 std::unique_ptr<Operator<Real>> make_operator(OperatorKind kind, ElasticElements<Real>& elements,
                                               const OperatorDefinition& definition);
 
-/// The layout of rotated gradients that an operator reads.
-constexpr kernels::GradientLayout gradient_layout(OperatorKind kind) {
+/// What an operator reads of the elements.
+constexpr kernels::GradientLayout gradient_layout(OperatorKind kind, const ElasticLaw& law = {}) {
+    if (!law.is_rotated()) return kernels::GradientLayout::element_blocks;
     return kind == OperatorKind::matrix_free ? kernels::GradientLayout::batches : kernels::GradientLayout::corners;
 }
 
