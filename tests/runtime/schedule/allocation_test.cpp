@@ -18,14 +18,14 @@ std::atomic<long>& allocation_count() {
     return count;
 }
 
+// NOLINTBEGIN(cppcoreguidelines-no-malloc, cppcoreguidelines-owning-memory): this is where memory comes from
+
 void* counted(std::size_t bytes, std::size_t alignment) {
     ++allocation_count();
     void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
 }
-
-// NOLINTBEGIN(cppcoreguidelines-no-malloc, cppcoreguidelines-owning-memory): this is where memory comes from
 
 // Never inline: beside a new that is not inline either, the compiler takes the free for a mismatch.
 [[gnu::noinline]] void released(void* memory) noexcept {
