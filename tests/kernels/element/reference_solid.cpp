@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <random>
 
-#include <Eigen/SVD>
-
 namespace lancet::test {
 
 namespace {
@@ -31,14 +29,20 @@ Eigen::Matrix<double, 12, 12> four_times(const Eigen::Matrix3d& r) {
     return blocks;
 }
 
-}  // namespace
-
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& f) {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d signs = Eigen::Matrix3d::Identity();
-    if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs(2, 2) = -1;
-    return svd.matrixU() * signs * svd.matrixV().transpose();
+/// dF/dx of an element: entry (3 a + b, 3 i + a) is the derivative of shape function i by coordinate b.
+Eigen::Matrix<double, 9, 12> gradient_operator(const Eigen::Matrix3d& rest_edges) {
+    const Eigen::Matrix3d inverse = rest_edges.inverse();
+    Eigen::Matrix<double, 9, 12> b = Eigen::Matrix<double, 9, 12>::Zero();
+    for (int a = 0; a < 3; ++a) {
+        for (int j = 0; j < 3; ++j) {
+            b.block<3, 1>(3 * a, 3 * (j + 1) + a) = inverse.row(j).transpose();
+            b.block<3, 1>(3 * a, a) -= inverse.row(j).transpose();
+        }
+    }
+    return b;
 }
+
+}  // namespace
 
 double ReferenceSolid::volume(std::size_t element) const {
     return edges(rest(), tetrahedra[element]).determinant() / 6;
@@ -136,6 +140,48 @@ double ReferenceSolid::elastic_energy(const Eigen::VectorXd& positions, bool cor
                                material(e).lambda() / 2 * strain.trace() * strain.trace());
     }
     return energy;
+}
+
+double ReferenceSolid::elastic_energy(const Eigen::VectorXd& positions, kernels::MaterialModel model) const {
+    double energy = 0;
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        energy += volume(e) * law(e, model).energy(deformation_gradient(e, positions));
+    }
+    return energy;
+}
+
+Eigen::VectorXd ReferenceSolid::elastic_force(const Eigen::VectorXd& positions, kernels::MaterialModel model) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(unknowns());
+    const Eigen::VectorXd undeformed = rest();
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        const Eigen::Matrix3d stress = law(e, model).stress(deformation_gradient(e, positions));
+        const Eigen::Matrix<double, 12, 1> f =
+            -volume(e) * gradient_operator(edges(undeformed, tetrahedra[e])).transpose() * flattened(stress);
+        for (int i = 0; i < 4; ++i) force.segment<3>(3 * tetrahedra[e][i]) += f.segment<3>(3 * i);
+    }
+    return force;
+}
+
+Eigen::Matrix<double, 12, 12> ReferenceSolid::element_stiffness(std::size_t element, const Eigen::VectorXd& positions,
+                                                                kernels::MaterialModel model,
+                                                                kernels::TangentKind kind) const {
+    const Eigen::Matrix<double, 9, 12> b = gradient_operator(edges(rest(), tetrahedra[element]));
+    const Tangent tangent = law(element, model).tangent(deformation_gradient(element, positions), kind);
+    return volume(element) * b.transpose() * tangent * b;
+}
+
+Eigen::MatrixXd ReferenceSolid::stiffness(const Eigen::VectorXd& positions, kernels::MaterialModel model,
+                                          kernels::TangentKind kind) const {
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        const Eigen::Matrix<double, 12, 12> k = element_stiffness(e, positions, model, kind);
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                stiffness.block<3, 3>(3 * tetrahedra[e][i], 3 * tetrahedra[e][j]) += k.block<3, 3>(3 * i, 3 * j);
+            }
+        }
+    }
+    return stiffness;
 }
 
 std::vector<std::uint8_t> ReferenceSolid::free_unknowns() const {

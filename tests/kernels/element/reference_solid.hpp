@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tests/kernels/element/reference_material.hpp"
 #include <Eigen/Dense>
 
 #include "lancet/kernels/layout/element_batches.hpp"
@@ -48,12 +49,19 @@ struct ReferenceSolid {
     Eigen::VectorXd elastic_force(const Eigen::VectorXd& positions, bool corotational) const;
     /// sum V (mu |R^T F - 1|^2 + lambda / 2 tr(R^T F - 1)^2), with the symmetric part of F - 1 if not corotational.
     double elastic_energy(const Eigen::VectorXd& positions, bool corotational) const;
+    /// The energy, -dW/dx and d^2 W/dx^2 (or what stands for it) of any material, element by element from F.
+    double elastic_energy(const Eigen::VectorXd& positions, kernels::MaterialModel model) const;
+    Eigen::VectorXd elastic_force(const Eigen::VectorXd& positions, kernels::MaterialModel model) const;
+    Eigen::MatrixXd stiffness(const Eigen::VectorXd& positions, kernels::MaterialModel model,
+                              kernels::TangentKind kind) const;
+    Eigen::Matrix<double, 12, 12> element_stiffness(std::size_t element, const Eigen::VectorXd& positions,
+                                                    kernels::MaterialModel model, kernels::TangentKind kind) const;
+    PointwiseReference law(std::size_t element, kernels::MaterialModel model) const {
+        return {model, material(element).lambda(), material(element).mu()};
+    }
     /// True for the unknowns of nodes that are not fixed.
     std::vector<std::uint8_t> free_unknowns() const;
 };
-
-/// The proper rotation that maximises tr(R^T F), from a two-sided Jacobi singular value decomposition.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& f);
 
 /// Rows and columns (entries) of the unknowns that are marked.
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& matrix, const std::vector<std::uint8_t>& marked);
