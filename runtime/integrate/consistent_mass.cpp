@@ -1,5 +1,6 @@
 #include "lancet/runtime/integrate/consistent_mass.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace lancet::runtime {
@@ -30,6 +31,52 @@ ConsistentMass::ConsistentMass(const kernels::ElementBatches<Real>& batches,
     }
     column_.shrink_to_fit();
     mass_.shrink_to_fit();
+}
+
+void ConsistentMass::solve(std::span<const double> row_sums, const kernels::NodeNumbering& numbering,
+                           const ConstraintFilter& filter, const System& system) const {
+    const std::size_t numbers = 4 * static_cast<std::size_t>(numbering.free_count);
+    const auto [r, p, q, x] = system;
+    const auto filtered = [&](std::span<double> nodal) {
+        for (int block = 0; block < numbering.blocks(); ++block) filter.apply(nodal.data(), block);
+    };
+    // q = S B r, with B the inverse of the row sums; returns r . B r. r and with it B r lie in the filter's range.
+    const auto precondition = [&] {
+        double product = 0;
+        for (std::size_t i = 0; i < numbers; ++i) {
+            q[i] = i % 4 < 3 && row_sums[i / 4] > 0 ? r[i] / row_sums[i / 4] : 0.0;
+            product += q[i] * r[i];
+        }
+        return product;
+    };
+    std::fill(x.begin(), x.end(), 0.0);
+    std::fill(p.begin(), p.end(), 0.0);
+    filtered(r);
+    double r_dot_z = precondition();
+    const double reference = r_dot_z;
+    constexpr int iterations = 60;
+    constexpr double tolerance = 0x1p-104;  // of the squared norm
+    double beta = 0;
+    for (int iteration = 0; iteration < iterations && r_dot_z > tolerance * reference; ++iteration) {
+        for (std::size_t i = 0; i < numbers; ++i) p[i] = q[i] + beta * p[i];
+        for (std::size_t i = 0; i < numbers; ++i) {
+            const std::size_t axis = i % 4;
+            q[i] = axis == 3
+                       ? 0.0
+                       : row_sums[i / 4] * p[i] + off_diagonal(i / 4, [&](std::size_t j) { return p[4 * j + axis]; });
+        }
+        filtered(q);
+        double curvature = 0;
+        for (std::size_t i = 0; i < numbers; ++i) curvature += p[i] * q[i];
+        const double alpha = r_dot_z / curvature;
+        for (std::size_t i = 0; i < numbers; ++i) {
+            x[i] += alpha * p[i];
+            r[i] -= alpha * q[i];
+        }
+        const double previous = r_dot_z;
+        r_dot_z = precondition();
+        beta = r_dot_z / previous;
+    }
 }
 
 std::size_t ConsistentMass::bytes() const noexcept {

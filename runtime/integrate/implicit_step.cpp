@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lancet/runtime/integrate/nodal_sum.hpp"
 #include "lancet/runtime/observe/clock.hpp"
 #include "lancet/runtime/schedule/ordered_sum.hpp"
+#include "lancet/runtime/solve/critical_step.hpp"
 
 namespace lancet::runtime {
 
@@ -44,20 +46,23 @@ ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, co
       partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
 
 template <class Real, class Accumulate>
-double ImplicitStep<Real, Accumulate>::step_length() const noexcept {
-    return settings_.integrator == Integrator::implicit_midpoint ? settings_.time_step / 2 : settings_.time_step;
+double ImplicitStep<Real, Accumulate>::position_length() const noexcept {
+    const double h = settings_.time_step;
+    if (is_newmark()) return settings_.newmark_beta / settings_.newmark_gamma * h;
+    return settings_.integrator == Integrator::implicit_midpoint ? h / 2 : h;
+}
+
+template <class Real, class Accumulate>
+double ImplicitStep<Real, Accumulate>::momentum_length() const noexcept {
+    const double h = settings_.time_step;
+    if (is_newmark()) return settings_.newmark_gamma * h;
+    return settings_.integrator == Integrator::implicit_midpoint ? h / 2 : h;
 }
 
 template <class Real, class Accumulate>
 template <class Function>
 double ImplicitStep<Real, Accumulate>::sum_over_nodes(Scheduler& scheduler, const Function& value) {
-    return ordered_sum(scheduler, std::span<double>(partial_), [&](int block) {
-        double sum = 0;
-        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
-            sum += value(static_cast<std::size_t>(node), 4 * static_cast<std::size_t>(node));
-        }
-        return sum;
-    });
+    return runtime::sum_over_nodes(scheduler, *numbering_, std::span<double>(partial_), value);
 }
 
 template <class Real, class Accumulate>
@@ -116,9 +121,9 @@ void ImplicitStep<Real, Accumulate>::add_change(Scheduler& scheduler, BodyMotion
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads,
                                                bool renew) {
-    const double h = step_length();
-    const typename Operator<Real>::Factors factors{.mass = 1 + h * loads.rayleigh_mass,
-                                                   .stiffness = h * h + h * loads.rayleigh_stiffness};
+    const double g = momentum_length();
+    const typename Operator<Real>::Factors factors{.mass = 1 + g * loads.rayleigh_mass,
+                                                   .stiffness = g * position_length() + g * loads.rayleigh_stiffness};
     const bool same_factors =
         factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
     const bool rotate = !is_linear() && (renew || !matrix_is_known_);
@@ -132,24 +137,30 @@ void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const doubl
 template <class Real, class Accumulate>
 typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>::right_hand_side(
     Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
-    bool at_state) {
-    const double h = step_length();
-    const bool needs_product = at_state || loads.rayleigh_stiffness > 0;
+    const Linearised& how) {
+    const double g = momentum_length();
+    const bool needs_product = how.at_state || loads.rayleigh_stiffness > 0;
     if (needs_product) {
         const std::span<Real> velocity = conjugate_gradients_.scratch();
         for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = static_cast<Real>(motion.velocity[i]);
         matrix_->product(scheduler, velocity.data());
     }
-    // Linearised at the state: dt D v + dt^2 K v = A v - M v. At the prediction: dt beta K v is a part of A v.
-    const double stiffness_share = at_state ? 1 : h * loads.rayleigh_stiffness / (h * h + h * loads.rayleigh_stiffness);
-    const double product_mass = at_state ? 1 : 1 + h * loads.rayleigh_mass;
-    const double drag = at_state ? 0 : h * loads.rayleigh_mass;
-    // A body that nothing holds falls as a whole: that part of dv is known, A dv = dt M g for dv = dt g / (1 + dt
-    // alpha), and solving for the rest alone keeps a fall free of strain, however few the iterations.
+    // Linearised at the state: g D v + g c K v = A v - M v. At the prediction: g beta K v is a part of A v.
+    const double stiffness_share =
+        how.at_state ? 1 : g * loads.rayleigh_stiffness / (g * position_length() + g * loads.rayleigh_stiffness);
+    const double product_mass = how.at_state ? 1 : 1 + g * loads.rayleigh_mass;
+    const double drag = how.at_state ? 0 : g * loads.rayleigh_mass;
+    // A body that nothing holds falls as a whole: that part of dv is known, A dv = g M gravity for dv = g gravity / (1
+    // + g alpha), and solving for the rest alone keeps a fall free of strain, however few the iterations. Newmark's
+    // velocity v~ differs from v_n by a share of the fall, too.
     const bool is_held = numbering_->free_count < numbering_->node_count || !filter.empty();
-    const std::array<double, 3> load = is_held ? loads.gravity : std::array<double, 3>{0, 0, 0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        fall_[axis] = is_held ? 0 : h * loads.gravity[axis] / (1 + h * loads.rayleigh_mass);
+    const double damped = 1 + g * loads.rayleigh_mass;
+    const double early = is_newmark() ? (1 - settings_.newmark_gamma) * settings_.time_step : 0;
+    std::array<double, 3> load = loads.gravity;
+    fall_.fill(0);
+    for (std::size_t axis = 0; axis < 3 && !is_held && how.falls_free; ++axis) {
+        load[axis] = early == 0 ? 0 : -early / g * damped * loads.gravity[axis];
+        fall_[axis] = g * loads.gravity[axis] / damped + early * loads.gravity[axis];
     }
     std::vector<double>& squares = partial_;
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
@@ -166,7 +177,7 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
                     at, [&](std::size_t j) { return motion.velocity[4 * j + axis] - start_velocity_[4 * j + axis]; });
                 const double momentum = inertia(at, [&](std::size_t j) { return motion.velocity[4 * j + axis]; });
                 double b =
-                    h * (static_cast<double>(force[i]) + mass * load[axis] + loads.nodal[i]) - change - drag * momentum;
+                    g * (static_cast<double>(force[i]) + mass * load[axis] + loads.nodal[i]) - change - drag * momentum;
                 if (needs_product) {
                     b -= stiffness_share * (static_cast<double>(product[i]) - product_mass * momentum);
                 }
@@ -210,12 +221,12 @@ void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyM
     const bool renew = steps_since_renewal_ == 0;
     linearise(scheduler, motion.position.data(), loads, renew);
     timer.add_to(totals.seconds_forces);
-    right_hand_side(scheduler, motion, loads, filter, true);
+    right_hand_side(scheduler, motion, loads, filter, {.at_state = true, .falls_free = true});
     timer.add_to(totals.seconds_rest);
     solve(scheduler, motion, filter, report);
     timer.add_to(totals.seconds_solve);
     add_change(scheduler, motion);
-    move(scheduler, motion, step_length(), motion.velocity);
+    move(scheduler, motion, position_length(), motion.velocity);
     report.newton_iterations = 1;
     timer.add_to(totals.seconds_rest);
 }
@@ -223,17 +234,18 @@ void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyM
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                             const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
-    const double h = step_length();
+    const double c = position_length();
     double reference = 0, potential = 0;
     // A line search needs the potential of all forces, which stiffness-proportional damping does not have.
     const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0;
     for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
         Timer timer;
-        move(scheduler, motion, h, motion.velocity);
+        move(scheduler, motion, c, motion.velocity);
         timer.add_to(totals.seconds_rest);
         linearise(scheduler, motion.position.data(), loads, iteration > 0 || steps_since_renewal_ == 0);
         timer.add_to(totals.seconds_forces);
-        const Residual residual = right_hand_side(scheduler, motion, loads, filter, false);
+        const Residual residual =
+            right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = iteration == 0});
         if (iteration == 0) {
             const double load = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
                 double square = 0;
@@ -243,7 +255,7 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
                 }
                 return square;
             });
-            reference = std::max(std::sqrt(residual.squared_norm), h * std::sqrt(load));
+            reference = std::max(std::sqrt(residual.squared_norm), momentum_length() * std::sqrt(load));
         }
         timer.add_to(totals.seconds_rest);
         if (iteration > 0 && std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * reference) break;
@@ -266,14 +278,14 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         timer.add_to(totals.seconds_rest);
     }
     Timer timer;
-    move(scheduler, motion, h, motion.velocity);
+    move(scheduler, motion, c, motion.velocity);
     timer.add_to(totals.seconds_rest);
 }
 
 template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                                               std::span<const double> before_hold) {
-    const double h = step_length();
+    const double h = settings_.time_step;
     const bool has_holds = !before_hold.empty();
     const double elastic =
         has_holds
@@ -316,10 +328,10 @@ double ImplicitStep<Real, Accumulate>::growth(Scheduler& scheduler, const BodyMo
 template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& scheduler, BodyMotion& motion,
                                                              std::span<const double> velocity, const BodyLoads& loads) {
-    const double h = step_length();
-    move(scheduler, motion, h, velocity);
+    const double g = momentum_length(), c = position_length();
+    move(scheduler, motion, c, velocity);
     const double elastic = elastic_energy(scheduler, motion.position.data());
-    return elastic + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+    return g / c * elastic + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
                double sum = 0;
                for (std::size_t axis = 0; axis < 3; ++axis) {
                    const double v = velocity[at + axis], change = v - start_velocity_[at + axis];
@@ -327,7 +339,7 @@ double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& schedule
                    const double momentum = inertia(node, [&](std::size_t j) { return velocity[4 * j + axis]; });
                    const double gained = inertia(
                        node, [&](std::size_t j) { return velocity[4 * j + axis] - start_velocity_[4 * j + axis]; });
-                   sum += 0.5 * (change * gained + h * loads.rayleigh_mass * v * momentum) - h * load * v;
+                   sum += 0.5 * (change * gained + g * loads.rayleigh_mass * v * momentum) - g * load * v;
                }
                return sum;
            });
@@ -373,7 +385,7 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
     if (!gained) return;
 
     report.repeated = true;
-    const double h = step_length();
+    const double h = settings_.time_step;
     double potential = incremental_potential(scheduler, motion, motion.velocity, loads);
     const double potential_at_start = incremental_potential(scheduler, motion, start_velocity_, loads);
     if (!(potential < potential_at_start)) {
@@ -383,7 +395,7 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
     for (int iteration = 0; iteration < settings_.safeguard_iterations && gained; ++iteration) {
         move(scheduler, motion, h, motion.velocity);
         linearise(scheduler, motion.position.data(), loads, true);
-        right_hand_side(scheduler, motion, loads, filter, false);
+        right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = true});
         timer.add_to(totals.seconds_forces);
         solve(scheduler, motion, filter, report);
         ++report.newton_iterations;
@@ -420,6 +432,59 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
 }
 
 template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::find_acceleration(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                                                       const ConstraintFilter& filter) {
+    // With v~ = v the right-hand side of a step linearised at x is g (f - D v).
+    start_velocity_ = motion.velocity;
+    linearise(scheduler, motion.position.data(), loads, true);
+    right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = false});
+    const double g = momentum_length();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+            const auto at = static_cast<std::size_t>(node);
+            for (std::size_t i = 4 * at; i < 4 * at + 3; ++i) {
+                const double force = static_cast<double>(right_hand_side_[i]) / g;
+                start_position_[i] = force;
+                motion.acceleration[i] = mass_[at] > 0 ? force / mass_[at] : 0.0;
+            }
+        }
+    });
+    if (!consistent_mass_.empty()) {
+        consistent_mass_.solve(mass_, *numbering_, filter,
+                               {.residual = start_position_,
+                                .direction = start_velocity_,
+                                .product = trial_velocity_,
+                                .solution = motion.acceleration});
+    }
+    acceleration_is_known_ = true;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::begin_newmark(Scheduler& scheduler, const BodyMotion& motion) {
+    const double h = settings_.time_step, c = position_length();
+    const double early = h * (1 - settings_.newmark_gamma), curved = h * h * (0.5 - settings_.newmark_beta);
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            const double v = motion.velocity[i], a = motion.acceleration[i];
+            start_velocity_[i] = v + early * a;
+            start_position_[i] = motion.position[i] + h * v + curved * a - c * start_velocity_[i];
+        }
+    });
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::end_newmark(Scheduler& scheduler, BodyMotion& motion) {
+    const double g = momentum_length();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            motion.acceleration[i] = (motion.velocity[i] - start_velocity_[i]) / g;
+        }
+    });
+}
+
+template <class Real, class Accumulate>
 StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                                    const ConstraintFilter& filter, std::span<const double> before_hold,
                                                    StepTotals& totals) {
@@ -432,8 +497,13 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
         energy_is_known_ = true;
         timer.add_to(totals.seconds_forces);
     }
+    if (is_newmark() && !acceleration_is_known_) {
+        find_acceleration(scheduler, motion, loads, filter);
+        timer.add_to(totals.seconds_forces);
+    }
     start_position_ = motion.position;
     start_velocity_ = motion.velocity;
+    if (is_newmark()) begin_newmark(scheduler, motion);
     timer.add_to(totals.seconds_rest);
     if (settings_.linearisation == Linearisation::state) {
         step_from_state(scheduler, motion, loads, filter, report, totals);
@@ -449,6 +519,11 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
         for (std::size_t i = 0; i < start_velocity_.size(); ++i) {
             motion.velocity[i] = 2 * motion.velocity[i] - start_velocity_[i];
         }
+        rest.add_to(totals.seconds_rest);
+    }
+    if (is_newmark()) {
+        Timer rest;
+        end_newmark(scheduler, motion);
         rest.add_to(totals.seconds_rest);
     }
     steps_since_renewal_ = (steps_since_renewal_ + 1) % settings_.rotation_interval;
@@ -490,9 +565,25 @@ void ImplicitStep<Real, Accumulate>::apply_matrix(Scheduler& scheduler, const Bo
 }
 
 template <class Real, class Accumulate>
+LargestEigenvalue ImplicitStep<Real, Accumulate>::largest_eigenvalue(Scheduler& scheduler, const double* position,
+                                                                     double tolerance) {
+    elements_->evaluate(scheduler, position, {.rotation = !is_linear(), .force = false, .energy = false});
+    matrix_->assemble(scheduler, {.mass = 0, .stiffness = 1});
+    matrix_is_known_ = false;
+    return runtime::largest_eigenvalue(scheduler, *matrix_, *numbering_, mass_, tolerance);
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::forget_velocity() noexcept {
+    energy_is_known_ = false;
+    acceleration_is_known_ = false;
+}
+
+template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::forget() noexcept {
     energy_is_known_ = false;
     matrix_is_known_ = false;
+    acceleration_is_known_ = false;
     steps_since_renewal_ = 0;
     preconditioner_->forget_coarse();
 }
@@ -507,9 +598,9 @@ std::size_t ImplicitStep<Real, Accumulate>::bytes() const noexcept {
 
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::save(std::vector<double>& numbers) const {
-    numbers.insert(numbers.end(),
-                   {kinetic_, elastic_, energy_is_known_ ? 1.0 : 0.0, matrix_is_known_ ? 1.0 : 0.0,
-                    static_cast<double>(steps_since_renewal_), matrix_->factors().mass, matrix_->factors().stiffness});
+    numbers.insert(numbers.end(), {kinetic_, elastic_, energy_is_known_ ? 1.0 : 0.0, matrix_is_known_ ? 1.0 : 0.0,
+                                   static_cast<double>(steps_since_renewal_), matrix_->factors().mass,
+                                   matrix_->factors().stiffness, acceleration_is_known_ ? 1.0 : 0.0});
     preconditioner_->save(numbers);
 }
 
@@ -521,7 +612,8 @@ void ImplicitStep<Real, Accumulate>::restore(Scheduler& scheduler, std::span<con
     matrix_is_known_ = numbers[3] != 0;
     steps_since_renewal_ = static_cast<int>(numbers[4]);
     if (matrix_is_known_) matrix_->assemble(scheduler, {.mass = numbers[5], .stiffness = numbers[6]});
-    numbers = numbers.subspan(7);
+    acceleration_is_known_ = numbers[7] != 0;
+    numbers = numbers.subspan(8);
     preconditioner_->restore(numbers);
 }
 

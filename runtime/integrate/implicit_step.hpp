@@ -1,61 +1,48 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "lancet/runtime/integrate/consistent_mass.hpp"
-#include "lancet/runtime/simulate/body.hpp"
+#include "lancet/runtime/integrate/step_method.hpp"
 #include "lancet/runtime/solve/conjugate_gradients.hpp"
 
 namespace lancet::runtime {
 
-/// The moving state of a body: xyz_ nodal vectors in the internal numbering.
-struct BodyMotion {
-    kernels::AlignedVector<double> position;  ///< metres
-    kernels::AlignedVector<double> velocity;  ///< metres per second
-};
-
-/// What acts on a body during a step.
-struct BodyLoads {
-    std::array<double, 3> gravity{};
-    kernels::AlignedVector<double> nodal;  ///< xyz_, newtons
-    double rayleigh_mass = 0;
-    double rayleigh_stiffness = 0;
-};
-
-/// One step of implicit Euler, linearised once or iterated, with the energy safeguard: see DeformableBody.
+/// One step of an implicit integrator, linearised once or iterated, and implicit Euler's energy safeguard: see
+/// DeformableBody. All of them solve
+///     x = x~ + c v,   M (v - v~) = g (f(x) - D v)
+/// for v, with the matrix M + g D + g c K. Implicit Euler: x~ = x_n, v~ = v_n, c = g = h. The midpoint rule: the same
+/// with c = g = h / 2 up to the middle of the step, from where the state is extrapolated. Newmark (1959): c = beta h /
+/// gamma, g = gamma h, v~ = v_n + h (1 - gamma) a_n, x~ = x_n + h v_n + h^2 (1/2 - beta) a_n - c v~, and
+/// a_n+1 = (v_n+1 - v~) / g.
 template <class Real, class Accumulate>
-class ImplicitStep {
+class ImplicitStep final : public StepMethod<Real> {
   public:
     ImplicitStep(ElasticElements<Real>& elements, const OperatorDefinition& definition, const Settings& settings);
 
-    /// Advances the motion by the settings' time step. `before_hold` are the velocities as they were before held nodes
-    /// got theirs, empty if no node is held.
     StepReport advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
-                       std::span<const double> before_hold, StepTotals& totals);
-
-    /// Kinetic and elastic energy of a motion.
+                       std::span<const double> before_hold, StepTotals& totals) override;
     Energies energies(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
-                      std::span<const double> rest_position);
-    /// Assembles the step matrix at the present positions and applies it to z (xyz_, zero at fixed nodes).
+                      std::span<const double> rest_position) override;
     void apply_matrix(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads, std::span<const Real> z,
-                      std::span<Real> out);
+                      std::span<Real> out) override;
+    LargestEigenvalue largest_eigenvalue(Scheduler& scheduler, const double* position, double tolerance) override;
 
-    /// Tells that the motion was changed from outside: energies and operator are taken up anew.
-    void forget() noexcept;
-    void forget_energy() noexcept { energy_is_known_ = false; }
-    /// Tells that rotations and gradients were renewed from outside.
-    void forget_matrix() noexcept { matrix_is_known_ = false; }
+    void forget() noexcept override;
+    void forget_velocity() noexcept override;
+    void forget_acceleration() noexcept override { acceleration_is_known_ = false; }
+    void forget_matrix() noexcept override { matrix_is_known_ = false; }
 
-    std::size_t bytes() const noexcept;
-    const Operator<Real>& matrix() const noexcept { return *matrix_; }
-    Preconditioner<Real>& preconditioner() const noexcept { return *preconditioner_; }
+    std::size_t bytes() const noexcept override;
+    const Operator<Real>* matrix() const noexcept override { return matrix_.get(); }
+    CoarseSpace<Real>* coarse() const noexcept override { return preconditioner_->coarse(); }
 
-    void save(std::vector<double>& numbers) const;
-    /// Reads back what save wrote, after the elements' rotations and gradients have been restored.
-    void restore(Scheduler& scheduler, std::span<const double>& numbers);
+    void save(std::vector<double>& numbers) const override;
+    void restore(Scheduler& scheduler, std::span<const double>& numbers) override;
 
   private:
     struct Residual {
@@ -63,11 +50,28 @@ class ImplicitStep {
     };
     class Timer;
 
-    double step_length() const noexcept;
+    /// How the right-hand side is formed.
+    struct Linearised {
+        bool at_state;    ///< at x_n instead of the prediction
+        bool falls_free;  ///< take the known fall of a body that nothing holds out of it, into fall_
+    };
+
+    /// c: what positions move by, for a velocity of 1.
+    double position_length() const noexcept;
+    /// g: what forces act for.
+    double momentum_length() const noexcept;
+    bool is_newmark() const noexcept { return settings_.integrator == Integrator::newmark; }
+    /// motion.acceleration = M^-1 (f - D v) where nothing is held.
+    void find_acceleration(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+                           const ConstraintFilter& filter);
+    /// start_position_ = x~, start_velocity_ = v~.
+    void begin_newmark(Scheduler& scheduler, const BodyMotion& motion);
+    /// Takes the new accelerations from the velocities.
+    void end_newmark(Scheduler& scheduler, BodyMotion& motion);
     bool is_linear() const noexcept { return settings_.model == ElementModel::linear; }
     void linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads, bool renew);
     Residual right_hand_side(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
-                             const ConstraintFilter& filter, bool at_state);
+                             const ConstraintFilter& filter, const Linearised& how);
     ConjugateGradientResult solve(Scheduler& scheduler, const BodyMotion& motion, const ConstraintFilter& filter,
                                   StepReport& report);
     void newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
@@ -108,13 +112,15 @@ class ImplicitStep {
     std::unique_ptr<Operator<Real>> matrix_;
     std::unique_ptr<Preconditioner<Real>> preconditioner_;
     ConjugateGradients<Real, Accumulate> conjugate_gradients_;
-    kernels::AlignedVector<double> start_position_, start_velocity_, trial_velocity_;
+    kernels::AlignedVector<double> start_position_, start_velocity_;  ///< x~ and v~
+    kernels::AlignedVector<double> trial_velocity_;
     kernels::AlignedVector<Accumulate> right_hand_side_, change_;
     std::vector<double> partial_;
     std::array<double, 4> fall_{};      ///< what gravity alone adds to the velocity of a body that nothing holds
     double kinetic_ = 0, elastic_ = 0;  ///< at the end of the last step
     bool energy_is_known_ = false;
     bool matrix_is_known_ = false;
+    bool acceleration_is_known_ = false;
     int steps_since_renewal_ = 0;
 };
 

@@ -3,21 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 #include <string>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/runtime/integrate/explicit_step.hpp"
+#include "lancet/runtime/integrate/floor_contact.hpp"
+#include "lancet/runtime/integrate/holds.hpp"
 #include "lancet/runtime/integrate/implicit_step.hpp"
+#include "lancet/runtime/simulate/loads.hpp"
 #include "lancet/runtime/simulate/scene_layout.hpp"
+#include "lancet/runtime/solve/critical_step.hpp"
 
 namespace lancet::runtime {
 
 namespace {
-
-struct Hold {
-    std::int32_t node;  ///< internal numbering
-    Point target;
-    Point direction;  ///< zero: all three
-};
 
 void require_finite(std::span<const Point> values, const char* what) {
     for (std::size_t node = 0; node < values.size(); ++node) {
@@ -39,12 +39,9 @@ class BodyOf final : public DeformableBody {
           element_count_(scene.mesh.tetrahedra().size()),
           numbering_(number_scene(scene, settings.ordering, settings.numbering)),
           elements_(make_elements(scene, settings, numbering_)),
-          step_(elements_,
-                {.tetrahedra = scene.mesh.tetrahedra(),
-                 .nodal_mass = nodal_masses(scene, element_materials(scene), numbering_),
-                 .mass = settings.mass,
-                 .scatter = settings.scatter},
-                settings) {
+          mass_(nodal_masses(scene, element_materials(scene), numbering_)),
+          step_(make_step(scene)),
+          holds_(scene, numbering_) {
         const std::size_t numbers = 4 * static_cast<std::size_t>(numbering_.node_count);
         motion_.position.assign(numbers, 0.0);
         motion_.velocity.assign(numbers, 0.0);
@@ -53,7 +50,10 @@ class BodyOf final : public DeformableBody {
         loads_.rayleigh_mass = scene.rayleigh_mass;
         loads_.rayleigh_stiffness = scene.rayleigh_stiffness;
         before_hold_.assign(numbers, 0.0);
-        mass_ = nodal_masses(scene, element_materials(scene), numbering_);
+        if (settings.integrator == Integrator::newmark || is_explicit(settings.integrator)) {
+            motion_.acceleration.assign(numbers, 0.0);
+        }
+        scatter_to_internal(external_loads(scene), loads_.nodal);
         scatter_to_internal(scene.mesh.nodes(), motion_.position);
         // Unused nodes stand where the first node stands: nothing far away enters a sum.
         for (std::size_t node = 0; node < static_cast<std::size_t>(numbering_.node_count); ++node) {
@@ -62,19 +62,28 @@ class BodyOf final : public DeformableBody {
         }
         rest_position_ = motion_.position;
         elements_.reset(scheduler, motion_.position.data());
+        if (scene.floor) {
+            floor_ = FloorContact(*scene.floor, numbering_, motion_.position);
+            floor_.require_above(numbering_, motion_.position);
+        }
+        if (is_explicit(settings.integrator) && !settings.force_time_step) require_stable_step(scheduler);
     }
 
     StepReport step(Scheduler& scheduler) override {
+        if (floor_.exists()) find_contacts(scheduler);
+        holds_.prepare(numbering_, time_ + settings_.time_step);
         if (!holds_.empty()) {
             before_hold_ = motion_.velocity;
-            apply_holds();
+            holds_.apply(motion_.position, motion_.velocity, settings_.time_step);
         }
         const StepReport report =
-            step_.advance(scheduler, motion_, loads_, filter_,
-                          holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
+            step_->advance(scheduler, motion_, loads_, holds_.filter(),
+                           holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
         time_ += settings_.time_step;
         return report;
     }
+
+    double critical_time_step(Scheduler& scheduler) override { return critical_time_step(scheduler, 1e-6); }
 
     std::size_t nodes() const noexcept override { return numbering_.internal_of_user.size(); }
     std::size_t elements() const noexcept override { return element_count_; }
@@ -90,7 +99,7 @@ class BodyOf final : public DeformableBody {
             if (!numbering_.is_free(internal)) continue;
             std::copy_n(positions[node].begin(), 3, &motion_.position[4 * static_cast<std::size_t>(internal)]);
         }
-        step_.forget();
+        step_->forget();
     }
 
     void set_velocities(std::span<const Point> velocities) override {
@@ -101,7 +110,7 @@ class BodyOf final : public DeformableBody {
             if (!numbering_.is_free(internal)) continue;
             std::copy_n(velocities[node].begin(), 3, &motion_.velocity[4 * static_cast<std::size_t>(internal)]);
         }
-        step_.forget_energy();
+        step_->forget_velocity();
     }
 
     void set_loads(std::span<const Point> loads) override {
@@ -121,18 +130,17 @@ class BodyOf final : public DeformableBody {
     }
 
     void release(std::int32_t node) override {
-        const std::int32_t internal = internal_node(node);
-        std::erase_if(holds_, [&](const Hold& hold) { return hold.node == internal; });
-        rebuild_filter();
+        holds_.release(internal_node(node));
+        step_->forget_acceleration();
     }
 
     void release_all() override {
-        holds_.clear();
-        rebuild_filter();
+        holds_.release_all();
+        step_->forget_acceleration();
     }
 
     Energies energies(Scheduler& scheduler) override {
-        return step_.energies(scheduler, motion_, loads_, rest_position_);
+        return step_->energies(scheduler, motion_, loads_, rest_position_);
     }
 
     void elastic_forces(Scheduler& scheduler, std::span<Point> out) override {
@@ -148,7 +156,7 @@ class BodyOf final : public DeformableBody {
                                       : 0.0;
             }
         }
-        step_.forget_matrix();
+        step_->forget_matrix();
     }
 
     void apply_matrix(Scheduler& scheduler, std::span<const Point> z, std::span<Point> out) override {
@@ -162,8 +170,8 @@ class BodyOf final : public DeformableBody {
                 in[4 * static_cast<std::size_t>(internal) + axis] = static_cast<Real>(z[node][axis]);
             }
         }
-        step_.apply_matrix(scheduler, motion_, loads_, in, result);
-        step_.forget_matrix();
+        step_->apply_matrix(scheduler, motion_, loads_, in, result);
+        step_->forget_matrix();
         for (std::size_t node = 0; node < out.size(); ++node) {
             const std::int32_t internal = numbering_.internal_of_user[node];
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -181,19 +189,15 @@ class BodyOf final : public DeformableBody {
         state.numbers_ = {static_cast<double>(element_count_), static_cast<double>(motion_.position.size()),
                           static_cast<double>(elements_.quaternions().size_bytes()),
                           static_cast<double>(elements_.rotated_gradients().size_bytes()), time_};
-        for (const auto* vector : {&motion_.position, &motion_.velocity, &loads_.nodal}) {
+        for (const auto* vector : {&motion_.position, &motion_.velocity, &motion_.acceleration, &loads_.nodal}) {
             state.numbers_.insert(state.numbers_.end(), vector->begin(), vector->end());
         }
-        step_.save(state.numbers_);
+        step_->save(state.numbers_);
         for (const auto span : {elements_.quaternions(), elements_.rotated_gradients()}) {
             const auto bytes = std::as_bytes(span);
             state.solver_.insert(state.solver_.end(), bytes.begin(), bytes.end());
         }
-        state.holds_.reserve(holds_.size());
-        for (const Hold& hold : holds_) {
-            state.holds_.push_back({static_cast<double>(hold.node), hold.target[0], hold.target[1], hold.target[2],
-                                    hold.direction[0], hold.direction[1], hold.direction[2]});
-        }
+        state.holds_ = holds_.save();
         return state;
     }
 
@@ -207,7 +211,7 @@ class BodyOf final : public DeformableBody {
         if (!fits) throw Error("restore: the state was saved by a body of another scene or other settings");
         time_ = numbers[4];
         numbers = numbers.subspan(5);
-        for (auto* vector : {&motion_.position, &motion_.velocity, &loads_.nodal}) {
+        for (auto* vector : {&motion_.position, &motion_.velocity, &motion_.acceleration, &loads_.nodal}) {
             std::copy_n(numbers.begin(), vector->size(), vector->begin());
             numbers = numbers.subspan(vector->size());
         }
@@ -216,12 +220,9 @@ class BodyOf final : public DeformableBody {
             std::memcpy(span.data(), bytes, span.size_bytes());
             bytes += span.size_bytes();
         }
-        holds_.clear();
-        for (const auto& h : state.holds_) {
-            holds_.push_back({static_cast<std::int32_t>(h[0]), {h[1], h[2], h[3]}, {h[4], h[5], h[6]}});
-        }
-        rebuild_filter();
-        step_.restore(scheduler, numbers);
+        holds_.restore(state.holds_);
+        if (floor_.exists()) floor_.restore(holds_.contacts());
+        step_->restore(scheduler, numbers);
     }
 
     const Settings& settings() const noexcept override { return settings_; }
@@ -230,16 +231,18 @@ class BodyOf final : public DeformableBody {
 
     std::size_t bytes() const noexcept override {
         using kernels::heap_bytes;
-        return numbering_.bytes() + elements_.bytes() + step_.bytes() + heap_bytes(motion_.position) +
-               heap_bytes(motion_.velocity) + heap_bytes(loads_.nodal) + heap_bytes(before_hold_) + heap_bytes(mass_) +
-               heap_bytes(rest_position_);
+        return numbering_.bytes() + elements_.bytes() + step_->bytes() + heap_bytes(motion_.position) +
+               heap_bytes(motion_.velocity) + heap_bytes(motion_.acceleration) + heap_bytes(loads_.nodal) +
+               heap_bytes(before_hold_) + heap_bytes(mass_) + heap_bytes(rest_position_) + holds_.bytes() +
+               floor_.bytes();
     }
     int blocks() const noexcept override { return numbering_.blocks(); }
     int coarse_unknowns() const noexcept override {
-        return step_.preconditioner().coarse() == nullptr ? 0 : step_.preconditioner().coarse()->unknowns();
+        return step_->coarse() == nullptr ? 0 : step_->coarse()->unknowns();
     }
     Work solve_work() const noexcept override {
-        const auto product = step_.matrix().work();
+        if (step_->matrix() == nullptr) return {};
+        const auto product = step_->matrix()->work();
         const auto numbers = 4.0 * numbering_.free_count;
         const bool has_blocks = settings_.preconditioner != PreconditionerKind::none;
         const bool has_coarse = settings_.preconditioner == PreconditionerKind::coarse;
@@ -259,11 +262,78 @@ class BodyOf final : public DeformableBody {
                                                const kernels::NodeNumbering& numbering) {
         const kernels::KernelSet<Real>& kernels = kernels::kernel_set<Real>(settings.instruction_set);
         const ElementMaterials materials = element_materials(scene);
+        const ElasticLaw law{.model = settings.model, .tangent = settings.tangent};
         return ElasticElements<Real>(
             kernels,
             kernels::make_element_batches<Real>(scene.mesh.nodes(), scene.mesh.tetrahedra(), materials.of_element,
                                                 materials.parameters, numbering, settings.scatter, kernels.width),
-            numbering, gradient_layout(settings.matrix), settings.rotation);
+            numbering,
+            // No operator: nothing reads the gradients but products for the critical step, which are matrix-free.
+            is_explicit(settings.integrator) && law.is_rotated() ? kernels::GradientLayout::batches
+                                                                : gradient_layout(settings.matrix, law),
+            settings.rotation, law);
+    }
+
+    std::unique_ptr<StepMethod<Real>> make_step(const Scene& scene) {
+        if (is_explicit(settings_.integrator)) {
+            if (scene.rayleigh_stiffness > 0) {
+                throw Error(std::string(to_string(settings_.integrator)) +
+                            ": damping proportional to the stiffness is for implicit integrators; expected "
+                            "rayleigh_stiffness 0");
+            }
+            return std::make_unique<ExplicitStep<Real>>(elements_, mass_, settings_);
+        }
+        return std::make_unique<ImplicitStep<Real, Accumulate>>(
+            elements_,
+            OperatorDefinition{.tetrahedra = scene.mesh.tetrahedra(),
+                               .nodal_mass = mass_,
+                               .mass = settings_.mass,
+                               .scatter = settings_.scatter},
+            settings_);
+    }
+
+    double critical_time_step(Scheduler& scheduler, double tolerance) {
+        if (settings_.mass != MassKind::lumped) {
+            throw Error("critical time step: the mass is consistent; explicit integrators need a lumped one");
+        }
+        const LargestEigenvalue eigenvalue = step_->largest_eigenvalue(scheduler, motion_.position.data(), tolerance);
+        return critical_step(eigenvalue.upper_bound, loads_.rayleigh_mass, loads_.rayleigh_stiffness);
+    }
+
+    void require_stable_step(Scheduler& scheduler) {
+        // A coarse bound is enough for most steps.
+        for (const double tolerance : {1e-2, 1e-6}) {
+            const double critical = critical_time_step(scheduler, tolerance);
+            if (settings_.time_step <= critical) return;
+            if (tolerance > 1e-6) continue;
+            std::ostringstream text;
+            text << to_string(settings_.integrator) << ": the time step of " << settings_.time_step
+                 << " s is longer than the critical one of " << critical << " s; force_time_step takes it anyway";
+            throw Error(text.str());
+        }
+    }
+
+    /// Finds the nodes that rest on the floor in the step to come.
+    void find_contacts(Scheduler& scheduler) {
+        if (floor_.is_touched()) {
+            elements_.evaluate(scheduler, motion_.position.data(),
+                               {.rotation = settings_.model != ElementModel::linear, .force = true});
+            scheduler.for_each_block(numbering_.blocks(), [&](int block) {
+                elements_.merge_force(block);
+                const std::size_t end = 4 * static_cast<std::size_t>(numbering_.block_begin[block + 1]);
+                for (std::size_t i = 4 * static_cast<std::size_t>(numbering_.block_begin[block]); i < end; ++i) {
+                    const std::size_t axis = i % 4;
+                    before_hold_[i] = axis == 3 ? 0.0
+                                                : static_cast<double>(elements_.force()[i]) + loads_.nodal[i] +
+                                                      mass_[i / 4] * loads_.gravity[axis];
+                }
+            });
+            if (settings_.model != ElementModel::linear) step_->forget_matrix();
+        }
+        const bool changed = floor_.update(numbering_, motion_.position, motion_.velocity, before_hold_, loads_.gravity,
+                                           settings_.time_step);
+        holds_.set_contacts(floor_.contacts(), floor_.normal(), changed);
+        if (changed) step_->forget_acceleration();
     }
 
     std::int32_t internal_node(std::int32_t node) const {
@@ -302,64 +372,21 @@ class BodyOf final : public DeformableBody {
             throw Error("hold: node " + std::to_string(node) + " is fixed for good");
         }
         require_finite(std::span(&target, 1), "hold: target");
-        const auto held =
-            std::find_if(holds_.begin(), holds_.end(), [&](const Hold& hold) { return hold.node == internal; });
-        if (held != holds_.end()) {
-            const bool same_direction = held->direction == direction;
-            *held = {internal, target, direction};
-            if (same_direction) return;
-        } else {
-            holds_.push_back({internal, target, direction});
-        }
-        rebuild_filter();
-    }
-
-    void rebuild_filter() {
-        std::vector<NodeConstraint> constraints;
-        constraints.reserve(holds_.size());
-        for (const Hold& hold : holds_) {
-            const Point& n = hold.direction;
-            const bool is_free_across = n != Point{0, 0, 0};
-            constraints.push_back(
-                {hold.node, is_free_across ? std::array<double, 6>{1 - n[0] * n[0], 1 - n[1] * n[1], 1 - n[2] * n[2],
-                                                                   -n[0] * n[1], -n[0] * n[2], -n[1] * n[2]}
-                                           : std::array<double, 6>{}});
-        }
-        filter_ = ConstraintFilter(std::move(constraints), numbering_);
-    }
-
-    /// Gives held nodes the velocity that brings them to their targets in one step, in the held directions.
-    void apply_holds() {
-        for (const Hold& hold : holds_) {
-            double* velocity = &motion_.velocity[4 * static_cast<std::size_t>(hold.node)];
-            const double* position = &motion_.position[4 * static_cast<std::size_t>(hold.node)];
-            Point wanted;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                wanted[axis] = (hold.target[axis] - position[axis]) / settings_.time_step;
-            }
-            const Point& n = hold.direction;
-            if (n == Point{0, 0, 0}) {
-                std::copy_n(wanted.begin(), 3, velocity);
-                continue;
-            }
-            double along = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) along += n[axis] * (wanted[axis] - velocity[axis]);
-            for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis] += along * n[axis];
-        }
+        if (holds_.hold(internal, target, direction)) step_->forget_acceleration();
     }
 
     Settings settings_;
     std::size_t element_count_;
     kernels::NodeNumbering numbering_;
     ElasticElements<Real> elements_;
-    ImplicitStep<Real, Accumulate> step_;
+    std::vector<double> mass_;  ///< row sums, [internal node], kilograms
+    std::unique_ptr<StepMethod<Real>> step_;
+    Holds holds_;
+    FloorContact floor_;
     BodyMotion motion_;
     BodyLoads loads_;
     kernels::AlignedVector<double> before_hold_;
     kernels::AlignedVector<double> rest_position_;
-    std::vector<double> mass_;
-    std::vector<Hold> holds_;
-    ConstraintFilter filter_;
     StepTotals totals_;
     double time_ = 0;
 };

@@ -57,7 +57,7 @@ class BodyState {
     friend class BodyOf;
     std::vector<double> numbers_;
     std::vector<std::byte> solver_;
-    std::vector<std::array<double, 7>> holds_;
+    std::vector<double> holds_;
 };
 
 /// A deformable body that is stepped through time. Nodes are addressed as in the scene's mesh; the numbering inside,
@@ -68,6 +68,12 @@ class BodyState {
 /// and goes on from there with Newton iterations if asked for. If the energy then exceeds what it was plus the work of
 /// loads and holds, the step is repeated from the new state with a line search on the incremental potential
 /// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads, and slowed down if that does not bring the energy down.
+/// ImplicitStep and ExplicitStep have the equations of the other integrators. Loads that are set before a step are
+/// those at its end. Newmark's accelerations are found anew from the forces where positions, velocities or the set of
+/// held components have been changed. Held components move at constant speed during a step.
+///
+/// The scene's loads act from the start, and are replaced by set_loads. What it prescribes is reached at the end of
+/// each step. For its floor see FloorContact; steps in which other nodes come to rest on it than before may allocate.
 class DeformableBody {
   public:
     virtual ~DeformableBody() = default;
@@ -87,7 +93,8 @@ class DeformableBody {
 
     /// From the next step on the node moves towards `target` so as to be there at the end of the step, in the
     /// directions normal to nothing (all three) or, with a unit `direction`, along it alone. Replaces an earlier hold
-    /// of the node. Throws lancet::Error for a fixed node, or a direction that is not of unit length.
+    /// of the node; components that the scene prescribes keep their course. Throws lancet::Error for a fixed node, or a
+    /// direction that is not of unit length.
     virtual void hold(std::int32_t node, const Point& target) = 0;
     virtual void hold(std::int32_t node, const Point& target, const Point& direction) = 0;
     virtual void release(std::int32_t node) = 0;
@@ -101,6 +108,10 @@ class DeformableBody {
     /// at fixed nodes; a filter of held nodes is not applied.
     virtual void apply_matrix(Scheduler& scheduler, std::span<const Point> z, std::span<Point> out) = 0;
     virtual double nodal_mass(std::int32_t node) const = 0;
+    /// The longest stable step of the explicit integrators at the present positions, in seconds (see critical_step):
+    /// never too long, and too short by less than 1e-6 of it, unless Lanczos' iterations end before. Fixed nodes count,
+    /// holds do not. Throws lancet::Error for a consistent mass.
+    virtual double critical_time_step(Scheduler& scheduler) = 0;
 
     virtual BodyState save() const = 0;
     /// Throws lancet::Error if the state is of another scene or other settings.
@@ -123,7 +134,8 @@ class DeformableBody {
 };
 
 /// Builds a body. The scheduler is used to set it up; each step takes one of its own. Throws lancet::Error for a scene
-/// or settings that make no sense.
+/// or settings that make no sense, and for an explicit integrator whose time step is longer than the critical one at
+/// rest (unless settings.force_time_step).
 std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler);
 
 }  // namespace lancet::runtime

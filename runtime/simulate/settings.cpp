@@ -29,6 +29,30 @@ std::string_view to_string(Linearisation linearisation) noexcept {
     return linearisation == Linearisation::state ? "state" : "prediction";
 }
 
+std::string_view to_string(Integrator integrator) noexcept {
+    switch (integrator) {
+        case Integrator::implicit_euler:
+            return "implicit-euler";
+        case Integrator::implicit_midpoint:
+            return "implicit-midpoint";
+        case Integrator::newmark:
+            return "newmark";
+        case Integrator::symplectic_euler:
+            return "symplectic-euler";
+        default:
+            return "central-differences";
+    }
+}
+
+Integrator integrator_from_string(std::string_view name) {
+    for (const Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::newmark,
+                                        Integrator::symplectic_euler, Integrator::central_differences}) {
+        if (to_string(integrator) == name) return integrator;
+    }
+    throw Error("unknown integrator '" + std::string(name) +
+                "'; expected implicit-euler, implicit-midpoint, newmark, symplectic-euler or central-differences");
+}
+
 void validate(const Settings& settings) {
     const auto require = [](bool holds, const std::string& what) {
         if (!holds) throw Error("settings: " + what);
@@ -45,14 +69,25 @@ void validate(const Settings& settings) {
     require(settings.safeguard_iterations >= 1, "the energy safeguard needs at least one iteration");
     require(settings.numbering.nodes_per_block >= 0 && settings.numbering.nodes_per_aggregate >= 0,
             "numbers of nodes per block and per aggregate must not be negative");
-    const bool iterated = settings.newton_iterations > 1 || settings.energy_safeguard ||
-                          settings.integrator == Integrator::implicit_midpoint;
+    const bool is_euler = settings.integrator == Integrator::implicit_euler;
+    const bool iterated = settings.newton_iterations > 1 || settings.energy_safeguard || !is_euler;
     require(!iterated || settings.rotation_interval == 1,
             "a rotation interval above 1 goes with one linearisation, implicit Euler and no energy safeguard");
-    require(settings.integrator == Integrator::implicit_euler || !settings.energy_safeguard,
-            "the energy safeguard goes with implicit Euler, not with the midpoint rule");
+    require(is_euler || !settings.energy_safeguard,
+            "the energy safeguard goes with implicit Euler; switch it off for " +
+                std::string(to_string(settings.integrator)));
+    require(settings.integrator != Integrator::newmark || settings.linearisation == Linearisation::prediction,
+            "Newmark's method is linearised at the prediction");
+    require(settings.newmark_gamma > 0 && std::isfinite(settings.newmark_gamma), "Newmark's gamma must be positive");
+    require(settings.newmark_beta > 0 && std::isfinite(settings.newmark_beta),
+            "Newmark's beta must be positive; beta = 0 is the integrator central-differences");
+    require(!is_explicit(settings.integrator) || settings.mass == MassKind::lumped,
+            std::string(to_string(settings.integrator)) + " is explicit and needs a lumped mass");
+    require(!is_explicit(settings.integrator) || settings.newton_iterations == 1,
+            std::string(to_string(settings.integrator)) + " is explicit and has no Newton iterations");
     require(settings.newton_iterations == 1 || settings.linearisation == Linearisation::prediction,
             "Newton iterations start at the prediction; linearisation at the state goes with one");
+    kernels::require_tangent(settings.model, settings.tangent);
     kernels::require(settings.instruction_set);
 }
 

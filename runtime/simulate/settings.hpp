@@ -10,12 +10,6 @@
 
 namespace lancet::runtime {
 
-/// What an element's energy is a function of.
-enum class ElementModel {
-    linear,       ///< small strain: a constant operator, no rotations
-    corotational  ///< small strain in the frame of the element's rotation
-};
-
 /// The arithmetic of a solve. Positions and velocities are double in all of them, and differences of positions are
 /// formed in double.
 enum class ScalarMode {
@@ -33,13 +27,33 @@ enum class Linearisation {
 };
 std::string_view to_string(Linearisation linearisation) noexcept;
 
-enum class Integrator { implicit_euler, implicit_midpoint };
+/// How a step goes through time. h is the time step, f all forces, D the damping.
+enum class Integrator {
+    implicit_euler,      ///< order 1, damps what it does not resolve; the only one with the energy safeguard
+    implicit_midpoint,   ///< order 2, keeps momenta, and the energy of the linear model
+    newmark,             ///< Newmark (1959); order 2 for gamma = 1/2, else 1
+    symplectic_euler,    ///< order 1, explicit: v += h M^-1 f(x), then x += h v
+    central_differences  ///< order 2, explicit, as velocity Verlet
+};
+std::string_view to_string(Integrator integrator) noexcept;
+Integrator integrator_from_string(std::string_view name);
+
+/// Explicit integrators solve no system: they need a lumped mass and a step below the critical one.
+constexpr bool is_explicit(Integrator integrator) noexcept {
+    return integrator == Integrator::symplectic_euler || integrator == Integrator::central_differences;
+}
 
 /// How a body is computed. The defaults are the fastest accurate choice for interactive steps.
 struct Settings {
     double time_step = 0.04;  ///< s
     Integrator integrator = Integrator::implicit_euler;
+    /// Newmark's parameters: x += h v + h^2 ((1/2 - beta) a_n + beta a_n+1), v += h ((1 - gamma) a_n + gamma a_n+1).
+    /// gamma below 1/2 makes energy grow; 2 beta >= gamma >= 1/2 is stable for every step, less only for short ones.
+    double newmark_beta = 0.25;
+    double newmark_gamma = 0.5;
+    bool force_time_step = false;  ///< take an explicit step even if it is longer than the critical one
     ElementModel model = ElementModel::corotational;
+    TangentKind tangent = TangentKind::rotated;  ///< see ElasticLaw
     MassKind mass = MassKind::lumped;
     ScalarMode scalar = ScalarMode::single_precision;
     kernels::InstructionSet instruction_set = kernels::active_instruction_set();

@@ -1,0 +1,97 @@
+#include "lancet/runtime/integrate/floor_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "lancet/kernels/error.hpp"
+#include "lancet/kernels/layout/aligned_vector.hpp"
+
+namespace lancet::runtime {
+
+FloorContact::FloorContact(const Floor& floor, const kernels::NodeNumbering& numbering,
+                           std::span<const double> position)
+    : floor_(floor), touches_(static_cast<std::size_t>(numbering.node_count), 0) {
+    const double length = std::hypot(floor.normal[0], floor.normal[1], floor.normal[2]);
+    if (!(std::abs(length - 1) < 1e-6)) {
+        throw Error("scene: the floor's normal has length " + std::to_string(length) + "; expected 1");
+    }
+    double size = 0;
+    for (const double value : floor.point) {
+        if (!std::isfinite(value)) throw Error("scene: the floor's point is not finite");
+        size = std::max(size, std::abs(value));
+    }
+    for (const double value : position) size = std::max(size, std::abs(value));
+    rounding_ = 1e-12 * size;
+    contacts_.reserve(static_cast<std::size_t>(numbering.free_count));
+    next_.reserve(contacts_.capacity());
+}
+
+double FloorContact::height(std::span<const double> position, std::size_t node) const noexcept {
+    double height = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        height += floor_->normal[axis] * (position[4 * node + axis] - floor_->point[axis]);
+    }
+    return height;
+}
+
+double FloorContact::along_normal(std::span<const double> vector, std::size_t node) const noexcept {
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) sum += floor_->normal[axis] * vector[4 * node + axis];
+    return sum;
+}
+
+void FloorContact::require_above(const kernels::NodeNumbering& numbering, std::span<const double> position) const {
+    if (!floor_) return;
+    for (std::size_t user = 0; user < numbering.internal_of_user.size(); ++user) {
+        const std::int32_t node = numbering.internal_of_user[user];
+        if (!numbering.is_free(node)) continue;
+        const double above = height(position, static_cast<std::size_t>(node));
+        if (above >= -rounding_) continue;
+        throw Error("node " + std::to_string(user) + " lies " + std::to_string(-above) +
+                    " m below the floor; expected every free node above it");
+    }
+}
+
+bool FloorContact::update(const kernels::NodeNumbering& numbering, std::span<const double> position,
+                          std::span<const double> velocity, std::span<const double> force,
+                          const std::array<double, 3>& gravity, double h) {
+    const mesh::Point& n = floor_->normal;
+    const double fall = std::min(0.0, n[0] * gravity[0] + n[1] * gravity[1] + n[2] * gravity[2]) * h * h;
+    next_.clear();
+    for (const Holds::Contact& contact : contacts_) {
+        const auto node = static_cast<std::size_t>(contact.node);
+        if (along_normal(force, node) < 0 && h * along_normal(velocity, node) <= rounding_) next_.push_back(contact);
+    }
+    const bool some_left = next_.size() < contacts_.size();
+    const std::size_t stayed = next_.size();
+    for (std::int32_t internal = 0; internal < numbering.free_count; ++internal) {
+        const auto node = static_cast<std::size_t>(internal);
+        if (touches_[node] != 0 || numbering.user_of_internal[node] < 0) continue;
+        const double above = height(position, node);
+        if (above + h * along_normal(velocity, node) + fall >= -rounding_) continue;
+        // On the surface, or where the node is if that is below.
+        const double down = std::max(above, 0.0);
+        mesh::Point place;
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = position[4 * node + axis] - down * n[axis];
+        next_.push_back({internal, place});
+    }
+    const bool changed = some_left || next_.size() > stayed;
+    for (const Holds::Contact& contact : contacts_) touches_[contact.node] = 0;
+    for (const Holds::Contact& contact : next_) touches_[contact.node] = 1;
+    std::swap(contacts_, next_);
+    return changed;
+}
+
+void FloorContact::restore(std::span<const Holds::Contact> contacts) {
+    for (const Holds::Contact& contact : contacts_) touches_[contact.node] = 0;
+    contacts_.assign(contacts.begin(), contacts.end());
+    for (const Holds::Contact& contact : contacts_) touches_[contact.node] = 1;
+}
+
+std::size_t FloorContact::bytes() const noexcept {
+    using kernels::heap_bytes;
+    return heap_bytes(contacts_) + heap_bytes(next_) + heap_bytes(touches_);
+}
+
+}  // namespace lancet::runtime
