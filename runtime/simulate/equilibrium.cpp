@@ -96,13 +96,7 @@ void hold_component(const mesh::TetMesh& mesh, std::span<const std::int32_t> nod
 }
 
 Held hold(const Scene& scene, const EquilibriumSettings& settings) {
-    for (const PrescribedDisplacement& p : scene.prescribed) {
-        if (p.node < 0 || static_cast<std::size_t>(p.node) >= scene.mesh.nodes().size() || p.axis < 0 || p.axis > 2 ||
-            !p.displacement) {
-            throw Error("prescribed displacement of node " + std::to_string(p.node) + ", axis " +
-                        std::to_string(p.axis) + ": expected a node of the mesh, axis 0, 1 or 2, and a function");
-        }
-    }
+    validate_constraints(scene);
     Held held{scene, scene.prescribed};
     const std::vector<FloatingComponent> floating = floating_components(scene);
     if (!floating.empty() && !settings.hold_floating) {
@@ -130,10 +124,6 @@ Held hold(const Scene& scene, const EquilibriumSettings& settings) {
     }
     std::vector<int> known(scene.mesh.nodes().size(), 0);
     for (const PrescribedDisplacement& p : held.prescribed) {
-        if ((known[static_cast<std::size_t>(p.node)] & (1 << p.axis)) != 0) {
-            throw Error("prescribed displacement of node " + std::to_string(p.node) + ", axis " +
-                        std::to_string(p.axis) + ": given twice");
-        }
         known[static_cast<std::size_t>(p.node)] |= 1 << p.axis;
     }
     for (std::size_t node = 0; node < known.size(); ++node) {

@@ -4,11 +4,13 @@
 
 #include "lancet/mesh/components.hpp"
 #include "lancet/runtime/simulate/equilibrium.hpp"
+#include "lancet/runtime/simulate/scene_layout.hpp"
 
 namespace lancet::runtime {
 
 std::vector<FloatingComponent> floating_components(const Scene& scene) {
     using Motions = Eigen::Matrix<double, 6, 6>;
+    validate_constraints(scene);
     const mesh::Components parts = mesh::components(scene.mesh);
     const std::span<const Point> nodes = scene.mesh.nodes();
     const auto count = static_cast<std::size_t>(parts.count);

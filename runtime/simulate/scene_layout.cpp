@@ -6,17 +6,34 @@
 
 namespace lancet::runtime {
 
+void validate_constraints(const Scene& scene) {
+    const std::size_t nodes = scene.mesh.nodes().size();
+    const auto exists = [&](std::int32_t node) { return node >= 0 && static_cast<std::size_t>(node) < nodes; };
+    for (const std::int32_t node : scene.fixed_nodes) {
+        if (!exists(node)) {
+            throw Error("scene: fixed node " + std::to_string(node) + "; the mesh has nodes 0 to " +
+                        std::to_string(static_cast<std::int64_t>(nodes) - 1));
+        }
+    }
+    std::vector<int> axes(nodes, 0);
+    for (const PrescribedDisplacement& p : scene.prescribed) {
+        const std::string what =
+            "prescribed displacement of node " + std::to_string(p.node) + ", axis " + std::to_string(p.axis);
+        if (!exists(p.node) || p.axis < 0 || p.axis > 2 || !p.displacement) {
+            throw Error(what + ": expected a node of the mesh, axis 0, 1 or 2, and a function");
+        }
+        int& known = axes[static_cast<std::size_t>(p.node)];
+        if ((known & (1 << p.axis)) != 0) throw Error(what + ": given twice");
+        known |= 1 << p.axis;
+    }
+}
+
 kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
                                     const kernels::NumberingOptions& options) {
     const std::span<const mesh::Point> nodes = scene.mesh.nodes();
     std::vector<std::uint8_t> fixed(nodes.size(), 0);
-    for (const std::int32_t node : scene.fixed_nodes) {
-        if (node < 0 || static_cast<std::size_t>(node) >= nodes.size()) {
-            throw Error("scene: fixed node " + std::to_string(node) + "; the mesh has nodes 0 to " +
-                        std::to_string(nodes.size() - 1));
-        }
-        fixed[node] = 1;
-    }
+    validate_constraints(scene);
+    for (const std::int32_t node : scene.fixed_nodes) fixed[static_cast<std::size_t>(node)] = 1;
     const mesh::Ordering ordering = mesh::order(scene.mesh, kind);
     return kernels::number_nodes(nodes, scene.mesh.tetrahedra(), fixed, ordering.new_of_node, options);
 }

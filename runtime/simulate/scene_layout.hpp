@@ -9,6 +9,10 @@
 
 namespace lancet::runtime {
 
+/// Throws lancet::Error for fixed nodes that do not exist, and for prescribed displacements of nodes or axes that do
+/// not exist, without a function, or given twice.
+void validate_constraints(const Scene& scene);
+
 /// The solver's numbering of a scene's nodes. Throws lancet::Error for fixed nodes that do not exist.
 kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
                                     const kernels::NumberingOptions& options);
