@@ -1,0 +1,131 @@
+#include "lancet/experiments/precision/diagram.hpp"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+#include "lancet/experiments/common/file.hpp"
+#include "lancet/experiments/common/process.hpp"
+#include "lancet/kernels/error.hpp"
+
+namespace lancet::experiments::precision {
+namespace {
+
+struct Series {
+    std::string name;
+    std::vector<const Row*> rows;
+};
+
+std::vector<Series> series_of(std::span<const Row> rows) {
+    std::vector<Series> all;
+    for (const Row& row : rows) {
+        const std::string& name = row.setting.series;
+        auto found = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.name == name; });
+        if (found == all.end()) found = all.insert(all.end(), {name, {}});
+        found->rows.push_back(&row);
+    }
+    const auto is_earlier = [](const Series& a, const Series& b) { return a.name < b.name; };
+    std::stable_sort(all.begin(), all.end(), is_earlier);
+    for (Series& one : all) {
+        std::stable_sort(one.rows.begin(), one.rows.end(),
+                         [](const Row* a, const Row* b) { return a->seconds < b->seconds; });
+    }
+    return all;
+}
+
+/// One block for each series, then the front; blocks are what gnuplot calls index.
+std::string data(const std::vector<Series>& series, std::span<const Row> rows) {
+    std::ostringstream text;
+    text.precision(17);
+    const auto block = [&text](const std::string& name, const std::vector<const Row*>& points) {
+        text << "# " << name << "\n# seconds error_percent setting\n";
+        for (const Row* row : points) {
+            text << row->seconds << ' ' << row->errors.judged() << " \"" << row->setting.label() << "\"\n";
+        }
+        text << "\n\n";
+    };
+    std::vector<const Row*> front;
+    for (const Series& one : series) block(one.name, one.rows);
+    for (const Row& row : rows) {
+        if (row.pareto) front.push_back(&row);
+    }
+    std::stable_sort(front.begin(), front.end(), [](const Row* a, const Row* b) { return a->seconds < b->seconds; });
+    block("Pareto front", front);
+    return text.str();
+}
+
+/// Gnuplot's single quotes know no escapes but the doubled quote.
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+    return result + "'";
+}
+
+std::string script(const std::vector<Series>& series, const std::string& title, const std::string& name) {
+    // Okabe and Ito's colours, told apart by every kind of sight; baselines have open symbols.
+    const std::vector<std::string> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                           "#E69F00", "#56B4E9", "#8B5A2B", "#777777"};
+    const std::vector<int> filled{7, 5, 9, 13, 11, 15}, open{6, 4, 8, 12, 10, 14};
+    std::ostringstream text;
+    text << "# Draws " << name << ".svg and " << name << ".png: gnuplot " << name << ".gp\n"
+         << "if (!exists(\"part\")) part = ''\n"
+         << "set logscale xy\nset grid xtics ytics mxtics mytics lc rgb '#d0d0d0', lc rgb '#ececec'\n"
+         << "set xlabel 'wall-clock time (s)'\n"
+         << "set ylabel 'error (%): the larger of L2 norm and quantity of interest'\n"
+         << "set format '%g'\nset title " << quoted(title) << " noenhanced\n"
+         << "set key outside right top noenhanced\nset pointsize 0.9\n";
+    const auto plot = [&](const std::string& terminal, const std::string& ending) {
+        text << "set terminal " << terminal << "\nset output " << quoted(name + ending) << ".part\nplot \\\n";
+        for (std::size_t i = 0; i < series.size(); ++i) {
+            const bool is_ours = series[i].name.starts_with("lancet");
+            const int symbol = (is_ours ? filled : open)[i % filled.size()];
+            text << "  " << quoted(name + ".dat") << " index " << i << " using 1:2 with points pt " << symbol
+                 << " lc rgb '" << colours[i % colours.size()] << "' title " << quoted(series[i].name) << ", \\\n";
+        }
+        // A front of points is a staircase: between two of them the slower one's error is not yet had.
+        text << "  " << quoted(name + ".dat") << " index " << series.size()
+             << " using 1:2 with steps lw 1.5 lc rgb '#000000' notitle, \\\n"
+             << "  " << quoted(name + ".dat") << " index " << series.size()
+             << " using 1:2 with points pt 6 ps 1.8 lw 1.5 lc rgb '#000000' title 'Pareto front'\n"
+             << "unset output\n";
+    };
+    plot("svg size 900,600 dynamic background rgb 'white' font 'sans,14'", ".svg");
+    plot("pngcairo size 1350,900 font 'sans,15'", ".png");
+    return text.str();
+}
+
+}  // namespace
+
+std::string draw(std::span<const Row> rows, const std::string& title, const std::filesystem::path& folder,
+                 const std::string& name) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) throw Error("--plot: the folder '" + folder.string() + "' cannot be made: " + failed.message());
+    const std::vector<Series> series = series_of(rows);
+    write_file(folder / (name + ".dat"), data(series, rows));
+    write_file(folder / (name + ".gp"), script(series, title, name));
+
+    const std::string part = ".part" + std::to_string(::getpid());
+    const Command command{
+        .program = "gnuplot",
+        .arguments = {"-e", "cd " + quoted(std::filesystem::absolute(folder).string()), "-e", "part = " + quoted(part),
+                      std::filesystem::absolute(folder / (name + ".gp")).string()}};
+    try {
+        const ProcessResult result = run_process(command);
+        if (!result.succeeded()) return "gnuplot ended with " + describe(result.end);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    for (const char* ending : {".svg", ".png"}) {
+        std::filesystem::rename(folder / (name + ending + part), folder / (name + ending), failed);
+        if (failed) return "gnuplot drew no " + name + ending + ": " + failed.message();
+    }
+    return {};
+}
+
+}  // namespace lancet::experiments::precision
