@@ -26,6 +26,9 @@ struct HyperelasticArguments {
     const std::int32_t* targets;
     const Real* rest;
     const double* positions;  ///< xyz_ nodal vector, metres
+    const double* start;      ///< evaluate: positions at the start of a step of which `positions` are the middle: the
+                              ///< force is that of the average stress of the step, for materials that have one (their
+                              ///< energy is that of the middle); nullptr: of the stress at `positions`
     Real* quaternion;         ///< [batch][w, x, y, z][lane] unit; start and result of the rotations of the corotational
                               ///< material; the others do not read it
     Real* force;              ///< evaluate: xyz_ buffer of the scatter plan, newtons; nullptr where no force is wanted

@@ -64,7 +64,15 @@ LANCET_INLINE void evaluate_together(const HyperelasticArguments<typename P::Rea
         const Material<P> material(at[k], rest[k].lambda_over_mu);
         if (a.energy != nullptr) energy += rest[k].weight * material.energy();
         if (a.force == nullptr) continue;
-        const Matrix3<P> pull = scale(material.stress(), -rest[k].weight);
+        Matrix3<P> stress = material.stress();
+        if constexpr (requires { material.average_stress(stress); }) {
+            if (a.start != nullptr) {
+                const std::int32_t* nodes = a.nodes + (first + k) * 4 * P::width;
+                const Matrix3<P> from = gradient(load_corner_differences<P>(a.start, nodes), rest[k].gradients);
+                stress = material.average_stress(subtract(at[k].gradient, from));
+            }
+        }
+        const Matrix3<P> pull = scale(stress, -rest[k].weight);
         Corners<P> f;
         for (int j = 0; j < 3; ++j) f.of[j] = multiply(pull, rest[k].gradients.of[j]);
         scatter(a.force, a.targets + (first + k) * 4 * P::width, f, a.exclusive_slots);

@@ -33,6 +33,16 @@ class StVenantKirchhoffMaterial {
         return fma(half * lambda_, trace * trace, square);
     }
     LANCET_INLINE Matrix3<P> stress() const { return multiply(gradient_, second_stress_); }
+    /// The stress at the middle F of a step from F - H to F + H, with the mean of the strains at both ends: its power
+    /// in the step is the change of the energy (Simo and Tarnow 1992). The mean strain is E(F) + H^T H / 2.
+    LANCET_INLINE Matrix3<P> average_stress(const Matrix3<P>& half_change) const {
+        const Symmetric3<P> square = symmetric_part(multiply_transposed(half_change, half_change));
+        const P half(typename P::Real(0.5));
+        const Symmetric3<P> mean{fma(half, square.xx, strain_.xx), fma(half, square.yy, strain_.yy),
+                                 fma(half, square.zz, strain_.zz), fma(half, square.xy, strain_.xy),
+                                 fma(half, square.xz, strain_.xz), fma(half, square.yz, strain_.yz)};
+        return multiply(gradient_, to_matrix(stress_of(mean)));
+    }
     LANCET_INLINE Matrix3<P> tangent(const Matrix3<P>& change) const {
         const Matrix3<P> geometric = multiply(change, second_stress_);
         Matrix3<P> product = multiply(gradient_, to_matrix(stress_of(symmetric_part_of_product(gradient_, change))));

@@ -10,6 +10,16 @@ struct Matrix3 {
     P entry[3][3];
 };
 
+/// a - b.
+template <class P>
+LANCET_INLINE Matrix3<P> subtract(const Matrix3<P>& a, const Matrix3<P>& b) {
+    Matrix3<P> difference;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) difference.entry[i][j] = a.entry[i][j] - b.entry[i][j];
+    }
+    return difference;
+}
+
 /// Reads the nine row-major entries of a batch, [entry][lane].
 template <class P>
 LANCET_INLINE Matrix3<P> load_matrix(const typename P::Real* source) {

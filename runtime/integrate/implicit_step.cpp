@@ -49,14 +49,14 @@ template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::position_length() const noexcept {
     const double h = settings_.time_step;
     if (is_newmark()) return settings_.newmark_beta / settings_.newmark_gamma * h;
-    return settings_.integrator == Integrator::implicit_midpoint ? h / 2 : h;
+    return is_midpoint() ? h / 2 : h;
 }
 
 template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::momentum_length() const noexcept {
     const double h = settings_.time_step;
     if (is_newmark()) return settings_.newmark_gamma * h;
-    return settings_.integrator == Integrator::implicit_midpoint ? h / 2 : h;
+    return is_midpoint() ? h / 2 : h;
 }
 
 template <class Real, class Accumulate>
@@ -127,7 +127,11 @@ void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const doubl
     const bool same_factors =
         factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
     const bool rotate = !is_linear() && (renew || !matrix_is_known_);
-    elements_->evaluate(scheduler, position, {.rotation = rotate, .force = true, .energy = false});
+    elements_->evaluate(scheduler, position,
+                        {.rotation = rotate,
+                         .force = true,
+                         .energy = false,
+                         .start = takes_average_stress() ? start_position_.data() : nullptr});
     if (rotate || !matrix_is_known_ || !same_factors) {
         matrix_->assemble(scheduler, factors);
         matrix_is_known_ = false;  // until the preconditioner has it too
@@ -236,8 +240,9 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
                                             const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
     const double c = position_length();
     double reference = 0, potential = 0;
-    // A line search needs the potential of all forces, which stiffness-proportional damping does not have.
-    const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0;
+    // A line search needs the potential of all forces, which stiffness-proportional damping and the average stress of
+    // a step do not have.
+    const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0 && !takes_average_stress();
     for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
         Timer timer;
         move(scheduler, motion, c, motion.velocity);
@@ -513,7 +518,7 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     if (settings_.energy_safeguard) {
         safeguard(scheduler, motion, loads, filter, before_hold, report, totals);
     }
-    if (settings_.integrator == Integrator::implicit_midpoint) {
+    if (is_midpoint()) {
         Timer rest;
         move(scheduler, motion, settings_.time_step, motion.velocity);
         for (std::size_t i = 0; i < start_velocity_.size(); ++i) {

@@ -61,6 +61,11 @@ class ImplicitStep final : public StepMethod<Real> {
     /// g: what forces act for.
     double momentum_length() const noexcept;
     bool is_newmark() const noexcept { return settings_.integrator == Integrator::newmark; }
+    /// Evaluates in the middle of the step, and goes on from there to its end.
+    bool is_midpoint() const noexcept {
+        return settings_.integrator == Integrator::implicit_midpoint || takes_average_stress();
+    }
+    bool takes_average_stress() const noexcept { return settings_.integrator == Integrator::energy_momentum; }
     /// motion.acceleration = M^-1 (f - D v) where nothing is held.
     void find_acceleration(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                            const ConstraintFilter& filter);

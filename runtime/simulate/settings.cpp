@@ -35,6 +35,8 @@ std::string_view to_string(Integrator integrator) noexcept {
             return "implicit-euler";
         case Integrator::implicit_midpoint:
             return "implicit-midpoint";
+        case Integrator::energy_momentum:
+            return "energy-momentum";
         case Integrator::newmark:
             return "newmark";
         case Integrator::symplectic_euler:
@@ -45,12 +47,14 @@ std::string_view to_string(Integrator integrator) noexcept {
 }
 
 Integrator integrator_from_string(std::string_view name) {
-    for (const Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::newmark,
-                                        Integrator::symplectic_euler, Integrator::central_differences}) {
+    for (const Integrator integrator :
+         {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::energy_momentum, Integrator::newmark,
+          Integrator::symplectic_euler, Integrator::central_differences}) {
         if (to_string(integrator) == name) return integrator;
     }
     throw Error("unknown integrator '" + std::string(name) +
-                "'; expected implicit-euler, implicit-midpoint, newmark, symplectic-euler or central-differences");
+                "'; expected implicit-euler, implicit-midpoint, energy-momentum, newmark, symplectic-euler or "
+                "central-differences");
 }
 
 void validate(const Settings& settings) {
@@ -76,6 +80,11 @@ void validate(const Settings& settings) {
     require(is_euler || !settings.energy_safeguard,
             "the energy safeguard goes with implicit Euler; switch it off for " +
                 std::string(to_string(settings.integrator)));
+    require(settings.integrator != Integrator::energy_momentum || settings.model != ElementModel::corotational,
+            "energy-momentum is for the linear and the St. Venant-Kirchhoff model: the corotational one has no average "
+            "stress");
+    require(settings.integrator != Integrator::energy_momentum || settings.linearisation == Linearisation::prediction,
+            "energy-momentum is linearised at the prediction");
     require(settings.integrator != Integrator::newmark || settings.linearisation == Linearisation::prediction,
             "Newmark's method is linearised at the prediction");
     require(settings.newmark_gamma > 0 && std::isfinite(settings.newmark_gamma), "Newmark's gamma must be positive");

@@ -29,9 +29,12 @@ std::string_view to_string(Linearisation linearisation) noexcept;
 
 /// How a step goes through time. h is the time step, f all forces, D the damping.
 enum class Integrator {
-    implicit_euler,      ///< order 1, damps what it does not resolve; the only one with the energy safeguard
-    implicit_midpoint,   ///< order 2, keeps momenta, and the energy of the linear model
-    newmark,             ///< Newmark (1959); order 2 for gamma = 1/2, else 1
+    implicit_euler,     ///< order 1, damps what it does not resolve; the only one with the energy safeguard
+    implicit_midpoint,  ///< order 2, keeps momenta, and the energy of the linear model
+    energy_momentum,  ///< order 2, Simo and Tarnow (1992): the midpoint rule with the average stress of the step, which
+                      ///< iterated to a tolerance keeps momenta and energy; for the linear and the St.
+                      ///< Venant-Kirchhoff model
+    newmark,          ///< Newmark (1959); order 2 for gamma = 1/2, else 1
     symplectic_euler,    ///< order 1, explicit: v += h M^-1 f(x), then x += h v
     central_differences  ///< order 2, explicit, as velocity Verlet
 };

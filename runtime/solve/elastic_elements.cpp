@@ -54,6 +54,7 @@ kernels::HyperelasticArguments<Real> ElasticElements<Real>::hyperelastic_argumen
             .targets = batches_.targets.data(),
             .rest = batches_.rest.data(),
             .positions = positions,
+            .start = wanted.start,
             .quaternion = quaternion_.data(),
             .force = wanted.force ? force_.data() : nullptr,
             .energy = wanted.energy ? energy_.data() : nullptr,

@@ -45,8 +45,9 @@ class ElasticElements {
         bool rotation = true;  ///< update the rotations, and the rotated gradients or element blocks
         bool force = true;
         bool energy = false;
-        bool keep_gradients = true;  ///< store the rotated gradients or element blocks; false spares what only
-                                     ///< operators need
+        const double* start = nullptr;  ///< see HyperelasticArguments::start
+        bool keep_gradients = true;     ///< store the rotated gradients or element blocks; false spares what only
+                                        ///< operators need
     };
 
     ElasticElements(const kernels::KernelSet<Real>& kernels, kernels::ElementBatches<Real> batches,

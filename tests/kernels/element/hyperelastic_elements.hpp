@@ -119,6 +119,7 @@ class HyperelasticElements {
                 .targets = batches.targets.data(),
                 .rest = batches.rest.data(),
                 .positions = position.data(),
+                .start = nullptr,
                 .quaternion = quaternion.data(),
                 .force = buffer.data(),
                 .energy = energy.data(),
