@@ -39,7 +39,7 @@ class BodyOf final : public DeformableBody {
           element_count_(scene.mesh.tetrahedra().size()),
           numbering_(number_scene(scene, settings.ordering, settings.numbering)),
           elements_(make_elements(scene, settings, numbering_)),
-          mass_(nodal_masses(scene, element_materials(scene), numbering_)),
+          mass_(nodal_masses(scene, element_materials(scene), numbering_, settings.mass)),
           step_(make_step(scene)),
           holds_(scene, numbering_) {
         const std::size_t numbers = 4 * static_cast<std::size_t>(numbering_.node_count);
@@ -270,7 +270,7 @@ class BodyOf final : public DeformableBody {
             numbering,
             // No operator: nothing reads the gradients but products for the critical step, which are matrix-free.
             is_explicit(settings.integrator) && law.is_rotated() ? kernels::GradientLayout::batches
-                                                                : gradient_layout(settings.matrix, law),
+                                                                 : gradient_layout(settings.matrix, law),
             settings.rotation, law);
     }
 
@@ -293,7 +293,7 @@ class BodyOf final : public DeformableBody {
     }
 
     double critical_time_step(Scheduler& scheduler, double tolerance) {
-        if (settings_.mass != MassKind::lumped) {
+        if (settings_.mass == MassKind::consistent) {
             throw Error("critical time step: the mass is consistent; explicit integrators need a lumped one");
         }
         const LargestEigenvalue eigenvalue = step_->largest_eigenvalue(scheduler, motion_.position.data(), tolerance);

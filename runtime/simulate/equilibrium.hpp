@@ -67,8 +67,8 @@ struct EquilibriumReport {
 /// says why. `positions`, in the mesh's order, hold the start (the rest positions, or a guess) and take the result: the
 /// last equilibrium that was found.
 ///
-/// Throws lancet::Error for a scene or settings that make no sense, and for components that nothing holds in all six
-/// rigid motions, naming them, unless `hold_floating` is set.
+/// Throws lancet::Error for a scene or settings that make no sense, for a floor, and for components that nothing holds
+/// in all six rigid motions, naming them, unless `hold_floating` is set.
 EquilibriumReport find_equilibrium(const Scene& scene, const EquilibriumSettings& settings, Scheduler& scheduler,
                                    std::span<Point> positions);
 

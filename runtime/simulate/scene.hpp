@@ -65,8 +65,8 @@ struct Scene {
     std::vector<Traction> tractions{};
     std::vector<PrescribedDisplacement> prescribed{};  ///< each component at most once, and not of fixed nodes
     std::optional<Floor> floor{};
-    double rayleigh_mass = 0;                    ///< D = rayleigh_mass M + rayleigh_stiffness K; 1 / s
-    double rayleigh_stiffness = 0;               ///< s
+    double rayleigh_mass = 0;       ///< D = rayleigh_mass M + rayleigh_stiffness K; 1 / s
+    double rayleigh_stiffness = 0;  ///< s
 };
 
 }  // namespace lancet::runtime

@@ -6,6 +6,7 @@
 #include "lancet/kernels/layout/node_numbering.hpp"
 #include "lancet/mesh/order.hpp"
 #include "lancet/runtime/simulate/scene.hpp"
+#include "lancet/runtime/solve/operator.hpp"
 
 namespace lancet::runtime {
 
@@ -26,8 +27,8 @@ struct ElementMaterials {
 /// Throws lancet::Error if region 0 has no material.
 ElementMaterials element_materials(const Scene& scene);
 
-/// Row sums of the mass matrix, [internal node], in kilograms: a quarter of each element's mass at each corner.
+/// Nodal masses, [internal node], in kilograms: the row sums of the mass matrix, or its weighted diagonal.
 std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
-                                 const kernels::NodeNumbering& numbering);
+                                 const kernels::NodeNumbering& numbering, MassKind kind = MassKind::lumped);
 
 }  // namespace lancet::runtime

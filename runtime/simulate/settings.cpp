@@ -90,7 +90,7 @@ void validate(const Settings& settings) {
     require(settings.newmark_gamma > 0 && std::isfinite(settings.newmark_gamma), "Newmark's gamma must be positive");
     require(settings.newmark_beta > 0 && std::isfinite(settings.newmark_beta),
             "Newmark's beta must be positive; beta = 0 is the integrator central-differences");
-    require(!is_explicit(settings.integrator) || settings.mass == MassKind::lumped,
+    require(!is_explicit(settings.integrator) || settings.mass != MassKind::consistent,
             std::string(to_string(settings.integrator)) + " is explicit and needs a lumped mass");
     require(!is_explicit(settings.integrator) || settings.newton_iterations == 1,
             std::string(to_string(settings.integrator)) + " is explicit and has no Newton iterations");

@@ -31,14 +31,21 @@ OperatorKind operator_kind_from_string(std::string_view name) {
 }
 
 std::string_view to_string(MassKind kind) noexcept {
-    return kind == MassKind::lumped ? "lumped" : "consistent";
+    switch (kind) {
+        case MassKind::lumped:
+            return "lumped";
+        case MassKind::weighted_diagonal:
+            return "weighted-diagonal";
+        default:
+            return "consistent";
+    }
 }
 
 MassKind mass_kind_from_string(std::string_view name) {
-    for (const MassKind kind : {MassKind::lumped, MassKind::consistent}) {
+    for (const MassKind kind : {MassKind::lumped, MassKind::weighted_diagonal, MassKind::consistent}) {
         if (to_string(kind) == name) return kind;
     }
-    throw Error("unknown mass '" + std::string(name) + "'; expected lumped or consistent");
+    throw Error("unknown mass '" + std::string(name) + "'; expected lumped, weighted-diagonal or consistent");
 }
 
 template <class Real>

@@ -21,8 +21,10 @@ OperatorKind operator_kind_from_string(std::string_view name);
 
 /// The mass of a body: what it is lumped to, and how.
 enum class MassKind {
-    lumped,     ///< a quarter of each element's mass at each corner (its row sum)
-    consistent  ///< int rho phi_i phi_j
+    lumped,             ///< row sums of the consistent mass at each corner
+    weighted_diagonal,  ///< its diagonal, scaled to the element's mass (Hinton, Rock, Zienkiewicz 1976); for linear
+                        ///< tetrahedra the same as the row sums
+    consistent          ///< int rho phi_i phi_j
 };
 std::string_view to_string(MassKind kind) noexcept;
 MassKind mass_kind_from_string(std::string_view name);

@@ -9,6 +9,7 @@
 #include "lancet/mesh/boundary.hpp"
 #include "lancet/mesh/generate/box.hpp"
 #include "lancet/runtime/simulate/equilibrium.hpp"
+#include "lancet/runtime/simulate/scene_layout.hpp"
 
 namespace lancet::test {
 namespace {
@@ -201,6 +202,7 @@ TEST(Statics, BadInputIsRefusedWithTheReason) {
         "axis 3: expected a node of the mesh, axis 0, 1 or 2");
     expect_refusal([&](auto& s, auto&) { s.prescribed = {{1, 0, zero}, {1, 0, zero}}; }, "given twice");
     expect_refusal([&](auto& s, auto&) { s.fixed_nodes = {-1}; }, "fixed node -1");
+    expect_refusal([](auto& s, auto&) { s.floor = {{0, 0, 0}, {0, 0, 1}}; }, "has a floor");
     expect_refusal([](auto&, auto& t) { t.tolerance = 0; }, "the tolerance must be in (0, 1)");
     expect_refusal([](auto&, auto& t) { t.load_steps = 0; }, "at least one load step");
     expect_refusal(
@@ -209,6 +211,20 @@ TEST(Statics, BadInputIsRefusedWithTheReason) {
             t.tangent = runtime::TangentKind::rotated;
         },
         "rotated");
+}
+
+TEST(Statics, TheWeightedDiagonalOfLinearTetrahedraIsTheirRowSum) {
+    const runtime::Scene scene = box({3, 2, 2}, {1, 2, 3});
+    const auto numbering = runtime::number_scene(scene, mesh::OrderingKind::none, {});
+    const auto materials = element_materials(scene);
+    const auto rows = nodal_masses(scene, materials, numbering, runtime::MassKind::lumped);
+    const auto weighted = nodal_masses(scene, materials, numbering, runtime::MassKind::weighted_diagonal);
+    double total = 0;
+    for (std::size_t node = 0; node < rows.size(); ++node) {
+        EXPECT_NEAR(weighted[node], rows[node], 1e-12);
+        total += weighted[node];
+    }
+    EXPECT_NEAR(total, 6000, 1e-9);  // 1000 kg / m^3
 }
 
 TEST(Statics, LoadsOnEdgesAndFacesAreTheirSums) {
