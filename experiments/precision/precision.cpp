@@ -15,6 +15,7 @@
 #include "lancet/experiments/common/progress.hpp"
 #include "lancet/experiments/precision/advice.hpp"
 #include "lancet/experiments/precision/diagram.hpp"
+#include "lancet/experiments/precision/dynamics.hpp"
 #include "lancet/experiments/precision/measure.hpp"
 #include "lancet/experiments/precision/report.hpp"
 #include "lancet/experiments/precision/statics.hpp"
@@ -30,7 +31,7 @@ using namespace lancet::experiments;
 using namespace lancet::experiments::precision;
 
 const std::vector<std::string>& problem_names() {
-    static const std::vector<std::string> names{"bar-static", "cantilever", "beam"};
+    static const std::vector<std::string> names{"bar-static", "bar-dynamic", "cantilever", "beam", "tumbling"};
     return names;
 }
 
@@ -88,6 +89,7 @@ struct Findings {
     Results results;
     std::vector<BudgetLine> budget;
     std::vector<Comparison> comparisons;
+    std::vector<OwnReference> references;
 };
 
 void compare_published(const StaticProblem& problem, const StaticReference& reference, Findings& findings) {
@@ -102,6 +104,11 @@ void study_statics(const StaticProblem& problem, const Options& options, const C
                    Findings& findings) {
     const StaticReference reference = make_static_reference(problem, choice, progress);
     compare_published(problem, reference, findings);
+    const auto cells = problem.box(reference.level).cells;
+    findings.references.push_back({problem.problem, problem.variant,
+                                   "double, " + std::to_string(cells[0]) + "x" + std::to_string(cells[1]) + "x" +
+                                       std::to_string(cells[2]) + " cells, extrapolated in the mesh",
+                                   reference.own_percent});
     measure(static_study(problem, reference, choice), options.effort, progress, findings.results);
     const StaticBudget parts = static_budget(problem, reference, choice, progress);
     BudgetLine line{.problem = problem.problem,
@@ -114,6 +121,18 @@ void study_statics(const StaticProblem& problem, const Options& options, const C
                     .scalar = parts.scalar,
                     .total = parts.total};
     findings.budget.push_back(line);
+}
+
+void study_dynamics(const DynamicProblem& problem, const Options& options, const Choice& choice, Progress& progress,
+                    Findings& findings) {
+    const DynamicReference reference = make_dynamic_reference(problem, choice, progress);
+    findings.references.push_back({problem.problem, "",
+                                   "double, same mesh, central differences of " +
+                                       format_number(problem.reference_step / 2, 3) +
+                                       " s, extrapolated in the time step",
+                                   reference.own_percent});
+    measure(dynamic_study(problem, reference, choice), options.effort, progress, findings.results);
+    findings.budget.push_back(dynamic_budget(problem, reference, choice, progress));
 }
 
 /// Calls `function` with the rows of each problem and variant, which follow each other.
@@ -148,6 +167,8 @@ void print(const Findings& findings, const std::vector<Advice>& advice) {
         std::cout << "\nPublished values\n";
         make_comparison_table(findings.comparisons).print(std::cout);
     }
+    std::cout << '\n';
+    make_reference_table(findings.references).print(std::cout);
     std::cout << "\nOmissions" << (findings.results.omissions.empty() ? ": none\n" : "\n");
     if (!findings.results.omissions.empty()) make_omission_table(findings.results.omissions).print(std::cout);
 }
@@ -163,6 +184,7 @@ nlohmann::ordered_json to_json(const Findings& findings, const std::vector<Advic
     document["advice"] = make_advice_table(advice, findings.results.rows).to_json();
     document["budget"] = make_budget_table(findings.budget).to_json();
     document["published"] = make_comparison_table(findings.comparisons).to_json();
+    document["references"] = make_reference_table(findings.references).to_json();
     return document;
 }
 
@@ -170,6 +192,7 @@ void plot(std::span<const Row> rows, const std::filesystem::path& folder) {
     std::set<std::string> complaints;
     for_each_problem(rows, [&](std::span<const Row> part) {
         std::string name = part.front().problem + (part.front().variant.empty() ? "" : "-" + part.front().variant);
+        std::erase_if(name, [](char c) { return c == ',' || c == '.'; });
         std::replace(name.begin(), name.end(), ' ', '-');
         const std::string complaint = draw(part, title(part.front()), folder, name);
         if (!complaint.empty()) complaints.insert(complaint);
@@ -206,9 +229,11 @@ ExitCode body(int argc, const char* const* argv) {
     Progress progress;
     Findings findings;
     for (const StaticProblem& problem : static_problems()) {
-        // The long Bar bends so far that small meshes say nothing about it.
-        if (!asked_for(problem.problem) || (options.shared.quick && problem.variant == "4 m")) continue;
+        if (!asked_for(problem.problem) || (options.shared.quick && !problem.is_quick)) continue;
         study_statics(problem, options, choice, progress, findings);
+    }
+    for (const DynamicProblem& problem : dynamic_problems(options.shared.quick)) {
+        if (asked_for(problem.problem)) study_dynamics(problem, options, choice, progress, findings);
     }
     progress.clear();
     const std::vector<Row>& rows = findings.results.rows;

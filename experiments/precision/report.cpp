@@ -32,7 +32,6 @@ std::vector<std::size_t> by_time(std::span<const Row> rows) {
     return order;
 }
 
-/// Columns of `chosen` rows without those that are empty in all of them.
 bool any(std::span<const Row> rows, const auto& has) {
     return std::any_of(rows.begin(), rows.end(), has);
 }
@@ -49,6 +48,7 @@ Table make_table(std::span<const Row> rows) {
                  {"preconditioner"},
                  {"integrator"},
                  {"linearisation"},
+                 {"tangent"},
                  {"rotation"},
                  {"rotation_interval"},
                  {"cells"},
@@ -86,6 +86,7 @@ Table make_table(std::span<const Row> rows) {
                        word(s.preconditioner),
                        word(s.integrator),
                        word(s.linearisation),
+                       word(s.tangent),
                        word(s.rotation),
                        positive_count(s.rotation_interval),
                        cells_text(s.cells),
@@ -148,6 +149,7 @@ Table make_printed_table(std::span<const Row> rows) {
         const auto add = [&other](bool is_so, const std::string& text) {
             if (is_so) other += (other.empty() ? "" : ", ") + text;
         };
+        add(!s.tangent.empty() && s.tangent != "exact", s.tangent + " tangent");
         add(!s.rotation.empty() && s.rotation != "robust", s.rotation);
         add(s.rotation_interval > 1, "rotations every " + std::to_string(s.rotation_interval));
         add(s.linearisation == "state", "at state");
@@ -227,6 +229,17 @@ Table make_comparison_table(std::span<const Comparison> comparisons) {
     for (const Comparison& one : comparisons) {
         table.add_row({one.problem, word(one.variant), one.quantity, one.published, one.ours, one.extrapolated,
                        one.difference_percent, one.trusted_percent, one.source});
+    }
+    return table;
+}
+
+Table make_reference_table(std::span<const OwnReference> references) {
+    Table table({{"problem", "problem"},
+                 {"variant", "variant"},
+                 {"reference", "reference of the norms, our own"},
+                 {"change_percent", "changed by extrapolation", "%", 2}});
+    for (const OwnReference& one : references) {
+        table.add_row({one.problem, word(one.variant), one.what, one.change_percent});
     }
     return table;
 }

@@ -23,6 +23,12 @@ struct Comparison {
     std::string source;
 };
 
+/// What L2 and energy norms are measured against: a solution of ours.
+struct OwnReference {
+    std::string problem, variant, what;
+    double change_percent = 0;  ///< of the L2 norm by the last extrapolation: what is left is a small part of it
+};
+
 /// The rows with all their columns, for files.
 [[nodiscard]] Table make_table(std::span<const Row> rows);
 /// Rows of one problem as a person wants them: by time, the Pareto front marked with an asterisk.
@@ -32,6 +38,7 @@ struct Comparison {
 [[nodiscard]] Table make_budget_table(std::span<const BudgetLine> budget);
 [[nodiscard]] Table make_omission_table(std::span<const Omission> omissions);
 [[nodiscard]] Table make_comparison_table(std::span<const Comparison> comparisons);
+[[nodiscard]] Table make_reference_table(std::span<const OwnReference> references);
 
 /// The rows as JSON objects; `pareto` is true or false.
 [[nodiscard]] nlohmann::ordered_json rows_json(std::span<const Row> rows);

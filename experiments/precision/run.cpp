@@ -16,6 +16,7 @@ std::string Setting::label() const {
     for (const std::string* word : {&scalar, &operator_, &preconditioner, &integrator}) add(*word);
     if (time_step > 0) add("dt=" + number(time_step));
     if (linearisation != "prediction") add(linearisation.empty() ? "" : "at-" + linearisation);
+    if (!tangent.empty() && tangent != "exact") add(tangent + "-tangent");
     if (!rotation.empty() && rotation != "robust") add(rotation);
     if (rotation_interval > 1) add("every-" + std::to_string(rotation_interval));
     if (tolerance > 0) add("tol=" + number(tolerance));

@@ -16,13 +16,14 @@ using mesh::Point;
 
 /// How a problem is solved, in the words of a row; empty and zero where a word does not apply.
 struct Setting {
-    std::string method = "lancet";  ///< lancet or eigen
+    std::string method = "lancet";  ///< lancet, lancet-extrapolated (from two meshes) or eigen
     std::string series;             ///< in the diagram
     std::string operator_;          ///< "operator" in files
     std::string scalar;
     std::string preconditioner;
     std::string integrator;
     std::string linearisation;
+    std::string tangent;
     std::string rotation;
     int rotation_interval = 0;
     std::array<int, 3> cells{};
@@ -41,6 +42,7 @@ struct Setting {
 /// What a run came to.
 struct Solution {
     std::vector<Point> positions;       ///< in the mesh's order, m
+    std::array<int, 3> cells{};         ///< of the mesh that the positions are on, where it is not the setting's
     double seconds = 0;                 ///< wall clock, of all that is needed from the mesh on (dynamics: of all steps)
     double flops = 0;                   ///< of the linear solves, from the formulas of their kernels
     std::optional<std::int64_t> bytes;  ///< of the solver, at most
@@ -49,7 +51,7 @@ struct Solution {
     std::string outcome = "converged";                   ///< or what is to be said of it
 };
 
-/// A run that came to nothing: its kind (diverged, stagnated, lost stability, refused, too slow), and how.
+/// A run that came to nothing: its kind (diverged, stagnated, lost stability, refused, too slow, not offered), and how.
 class RunFailed : public std::runtime_error {
   public:
     RunFailed(std::string kind, const std::string& explanation)

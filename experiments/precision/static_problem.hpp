@@ -24,6 +24,7 @@ struct StaticProblem {
     std::string source;                        ///< of `tip`
     double source_percent = 0;                 ///< how far `tip` may be trusted
     int levels = 3;                            ///< meshes that a full run measures
+    bool is_quick = true;                      ///< part of a quick run
 
     /// The middle of the face x = length.
     [[nodiscard]] mesh::Point tip_point() const;

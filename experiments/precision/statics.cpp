@@ -7,6 +7,7 @@
 #include "lancet/experiments/bar/workers.hpp"
 #include "lancet/experiments/common/peak_memory.hpp"
 #include "lancet/experiments/common/table.hpp"
+#include "lancet/experiments/precision/words.hpp"
 #include "lancet/kernels/error.hpp"
 #include "lancet/runtime/observe/clock.hpp"
 #include "lancet/runtime/simulate/body.hpp"
@@ -16,15 +17,6 @@ namespace {
 
 constexpr double reference_tolerance = 1e-8;
 
-kernels::RotationMethod rotation_method(const std::string& name) {
-    using kernels::RotationMethod;
-    for (const RotationMethod method :
-         {RotationMethod::quaternion, RotationMethod::polar, RotationMethod::svd, RotationMethod::robust}) {
-        if (kernels::to_string(method) == name) return method;
-    }
-    throw Error("unknown rotation method '" + name + "'; expected quaternion, polar, svd or robust");
-}
-
 runtime::EquilibriumSettings settings_of(const StaticProblem& problem, const Setting& setting) {
     runtime::EquilibriumSettings settings;
     settings.model = problem.model;
@@ -32,6 +24,7 @@ runtime::EquilibriumSettings settings_of(const StaticProblem& problem, const Set
     settings.instruction_set = kernels::instruction_set_from_string(setting.instruction_set);
     settings.matrix = runtime::operator_kind_from_string(setting.operator_);
     settings.preconditioner = runtime::preconditioner_kind_from_string(setting.preconditioner);
+    if (!setting.tangent.empty()) settings.tangent = kernels::tangent_kind_from_string(setting.tangent);
     if (!setting.rotation.empty()) settings.rotation.method = rotation_method(setting.rotation);
     settings.tolerance = setting.tolerance;
     if (setting.iterations > 0) settings.conjugate_gradient_iterations = setting.iterations;
@@ -43,29 +36,12 @@ double flops_of_iteration(const runtime::Scene& scene, const runtime::Equilibriu
                           runtime::Scheduler& scheduler) {
     runtime::Settings settings;
     settings.model = of.model;
+    settings.tangent = of.tangent;
     settings.scalar = of.scalar;
     settings.instruction_set = of.instruction_set;
     settings.matrix = of.matrix;
     settings.preconditioner = of.preconditioner;
     return runtime::make_body(scene, settings, scheduler)->solve_work().flops;
-}
-
-std::vector<Point> displacement(const mesh::Box& box, std::span<const Point> positions) {
-    const mesh::TetMesh mesh = mesh::box(box);
-    std::vector<Point> result(positions.begin(), positions.end());
-    for (std::size_t node = 0; node < result.size(); ++node) {
-        for (std::size_t axis = 0; axis < 3; ++axis) result[node][axis] -= mesh.nodes()[node][axis];
-    }
-    return result;
-}
-
-std::size_t elements_of(const std::array<int, 3>& cells) {
-    return 5 * static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
-           static_cast<std::size_t>(cells[2]);
-}
-
-double percent(double part, double whole) {
-    return 100 * part / whole;
 }
 
 Setting lancet_setting(const StaticProblem& problem, const std::string& scalar, double tolerance, int level) {
@@ -75,7 +51,8 @@ Setting lancet_setting(const StaticProblem& problem, const std::string& scalar, 
     setting.operator_ = "edge-blocks";
     setting.scalar = scalar;
     setting.preconditioner = "coarse";
-    setting.rotation = problem.model == runtime::ElementModel::linear ? "" : "robust";
+    if (problem.model == runtime::ElementModel::corotational) setting.rotation = "robust";
+    if (problem.model != runtime::ElementModel::linear) setting.tangent = "exact";
     setting.cells = problem.box(level).cells;
     setting.tolerance = tolerance;
     return setting;
@@ -110,11 +87,45 @@ std::vector<Setting> lancet_settings(const StaticProblem& problem, const Choice&
     };
     vary(&Setting::operator_, {"matrix-free", "block-rows"});
     vary(&Setting::preconditioner, {"none", "jacobi", "block-jacobi"});
+    if (problem.model == runtime::ElementModel::corotational) vary(&Setting::tangent, {"rotated"});
+    if (problem.model != runtime::ElementModel::linear) vary(&Setting::tangent, {"projected"});
     if (!base.rotation.empty()) vary(&Setting::rotation, {"quaternion", "polar", "svd"});
     return settings;
 }
 
-/// The published options that the worker understands.
+/// Richardson's extrapolation for errors of order 2, at the nodes of the coarser of two meshes: twice the accuracy of
+/// the finer one for little more than its time.
+Solution find_extrapolated(const StaticProblem& problem, int level, const Setting& setting) {
+    const Solution coarse = find_static(problem, level - 1, setting);
+    Solution solution = find_static(problem, level, setting);
+    const BoxField fine(problem.box(level), solution.positions);
+    const mesh::TetMesh mesh = mesh::box(problem.box(level - 1));
+    solution.cells = problem.box(level - 1).cells;
+    solution.positions = coarse.positions;
+    for (std::size_t node = 0; node < solution.positions.size(); ++node) {
+        const Point at = fine.at(mesh.nodes()[node]).value;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            solution.positions[node][axis] = at[axis] + (at[axis] - solution.positions[node][axis]) / 3;
+        }
+    }
+    solution.seconds += coarse.seconds;
+    solution.flops += coarse.flops;
+    solution.iterations += coarse.iterations;
+    if (solution.outcome == "converged") solution.outcome = coarse.outcome;
+    return solution;
+}
+
+std::vector<Setting> extrapolated_settings(const StaticProblem& problem, const Choice& choice, int level) {
+    std::vector<Setting> settings;
+    for (const std::string& scalar : choice.scalars) {
+        settings.push_back(lancet_setting(problem, scalar, scalar == "float" ? 1e-3 : 1e-5, level));
+        settings.back().method = "lancet-extrapolated";
+        settings.back().series = "lancet, extrapolated from two meshes";
+    }
+    return settings;
+}
+
+/// What the worker is started with, but for the problem.
 bar::Job eigen_job(const StaticProblem& problem, const Setting& setting, const Choice& choice) {
     bar::Job job{"eigen", "static", choice.workers / "precision_eigen", {}, setting.threads};
     const bool is_linear = problem.model == runtime::ElementModel::linear;
@@ -143,10 +154,7 @@ Solution run_eigen(const StaticProblem& problem, int level, const Setting& setti
     if (report.bytes > 0) solution.bytes = report.bytes;
     solution.iterations = report.cg_iterations_total;
     solution.outcome = report.variant;
-    for (std::size_t i = 0; i < nodes; ++i) {
-        solution.positions.push_back(
-            {snapshots.front()[3 * i], snapshots.front()[3 * i + 1], snapshots.front()[3 * i + 2]});
-    }
+    solution.positions = points_of(snapshots.front());
     return solution;
 }
 
@@ -174,12 +182,6 @@ std::vector<Setting> eigen_settings(const StaticProblem& problem, const Choice& 
         }
     }
     return settings;
-}
-
-std::string family(const Setting& setting) {
-    Setting any = setting;
-    any.cells = {0, 0, 0};
-    return any.label();
 }
 
 }  // namespace
@@ -219,21 +221,34 @@ StaticReference make_static_reference(const StaticProblem& problem, const Choice
         if (solution.outcome != "converged") {
             throw Error(problem.problem + " " + problem.variant + ": the reference is not found: " + solution.outcome);
         }
-        return BoxField(problem.box(at), displacement(problem.box(at), solution.positions));
+        return displacement_field(problem.box(at), solution.positions);
     };
     const BoxField coarse = solve(level - 1);
+    const BoxField fine = solve(level);
+    // Richardson's correction for errors of order 2 is known at the nodes of the coarser mesh, and smooth.
+    const mesh::TetMesh coarse_mesh = mesh::box(problem.box(level - 1));
+    std::vector<Point> correction(coarse.values().begin(), coarse.values().end());
+    for (std::size_t node = 0; node < correction.size(); ++node) {
+        const Point at = fine.at(coarse_mesh.nodes()[node]).value;
+        for (std::size_t axis = 0; axis < 3; ++axis) correction[node][axis] = (at[axis] - correction[node][axis]) / 3;
+    }
+    const BoxField corrections(problem.box(level - 1), correction);
+    const mesh::TetMesh fine_mesh = mesh::box(problem.box(level));
+    std::vector<Point> extrapolated(fine.values().begin(), fine.values().end());
+    for (std::size_t node = 0; node < extrapolated.size(); ++node) {
+        const Point change = corrections.at(fine_mesh.nodes()[node]).value;
+        for (std::size_t axis = 0; axis < 3; ++axis) extrapolated[node][axis] += change[axis];
+    }
     StaticReference reference{.level = level,
-                              .displacement = solve(level),
+                              .displacement = BoxField(problem.box(level), extrapolated),
                               .form = {.young_modulus = problem.options.young_modulus,
                                        .poisson_ratio = problem.options.poisson_ratio,
                                        .rotated = problem.model != runtime::ElementModel::linear},
                               .size = {}};
     reference.size = norms(reference.displacement, reference.form);
-    reference.tip = reference.displacement.at(problem.tip_point()).value;
-    const Point coarse_tip = coarse.at(problem.tip_point()).value;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        reference.tip_extrapolated[axis] = reference.tip[axis] + (reference.tip[axis] - coarse_tip[axis]) / 3;
-    }
+    reference.own_percent = percent(error_norms(fine, reference.displacement, reference.form).l2, reference.size.l2);
+    reference.tip = fine.at(problem.tip_point()).value;
+    reference.tip_extrapolated = reference.displacement.at(problem.tip_point()).value;
     return reference;
 }
 
@@ -251,7 +266,7 @@ Errors judge_static(const StaticProblem& problem, const StaticReference& referen
                     const std::vector<Point>& positions) {
     mesh::Box box = problem.box(0);
     box.cells = cells;
-    const BoxField field(box, displacement(box, positions));
+    const BoxField field = displacement_field(box, positions);
     const Norms difference = error_norms(field, reference.displacement, reference.form);
     const Point tip = field.at(problem.tip_point()).value;
     Errors errors;
@@ -265,9 +280,19 @@ Errors judge_static(const StaticProblem& problem, const StaticReference& referen
 Study static_study(const StaticProblem& problem, const StaticReference& reference, const Choice& choice) {
     Study study{.problem = problem.problem, .variant = problem.variant, .cases = {}, .judge = {}};
     study.judge = [&problem, &reference](const Setting& setting, const Solution& solution) {
-        return judge_static(problem, reference, setting.cells, solution.positions);
+        const bool is_other_mesh = solution.cells[0] > 0;
+        return judge_static(problem, reference, is_other_mesh ? solution.cells : setting.cells, solution.positions);
     };
     const int levels = measured_levels(problem, choice.quick);
+    const bool is_offered = problem.model != runtime::ElementModel::st_venant_kirchhoff;
+    if (!is_offered) {
+        Setting setting;
+        setting.method = "eigen";
+        setting.cells = problem.box(0).cells;
+        study.cases.push_back({setting, 0, "", 1, []() -> Solution {
+                                   throw RunFailed("not offered", "the baseline has no St. Venant-Kirchhoff elements");
+                               }});
+    }
     for (int level = 0; level < levels; ++level) {
         // One choice at a time on the finest mesh but one.
         for (const Setting& plain : lancet_settings(problem, choice, level, level == levels - 2)) {
@@ -276,6 +301,16 @@ Study static_study(const StaticProblem& problem, const StaticReference& referenc
                                        [&problem, level, setting] { return find_static(problem, level, setting); }});
             }
         }
+        if (level > 0) {
+            for (const Setting& plain : extrapolated_settings(problem, choice, level)) {
+                for (const Setting& setting : choice.machines(plain)) {
+                    study.cases.push_back(
+                        {setting, elements_of(setting.cells), family(setting), 4.0 / 3,
+                         [&problem, level, setting] { return find_extrapolated(problem, level, setting); }});
+                }
+            }
+        }
+        if (!is_offered) continue;
         for (const Setting& plain : eigen_settings(problem, choice, level)) {
             for (const Setting& setting : choice.baseline_machines(plain)) {
                 const double growth = setting.preconditioner == "ldlt" ? 2 : 4.0 / 3;
@@ -296,8 +331,7 @@ StaticBudget static_budget(const StaticProblem& problem, const StaticReference& 
         Setting setting = lancet_setting(problem, scalar, to, level);
         setting.instruction_set = choice.instruction_sets.front();
         progress.show(problem.problem + " " + problem.variant + ": error budget, " + setting.label());
-        return BoxField(problem.box(level),
-                        displacement(problem.box(level), find_static(problem, level, setting).positions));
+        return displacement_field(problem.box(level), find_static(problem, level, setting).positions);
     };
     const BoxField exact = solve("double", reference_tolerance);
     const BoxField loose = solve("double", tolerance);

@@ -14,14 +14,16 @@
 namespace lancet::experiments::precision {
 
 /// What static runs are judged by: our own converged double solution on a mesh one level finer than any that is
-/// measured (for the norms), and published displacements (for the quantity of interest).
+/// measured, with Richardson's correction from that and the next coarser one (for the norms), and published
+/// displacements (for the quantity of interest).
 struct StaticReference {
     int level = 0;
     BoxField displacement;
     EnergyForm form;
     Norms size;                ///< of the displacement: errors are relative to it
-    Point tip{};               ///< on the mesh of the reference
-    Point tip_extrapolated{};  ///< from it and the next coarser one, which have errors of order 2
+    double own_percent = 0;    ///< the change that the correction made, in the L2 norm
+    Point tip{};               ///< on the mesh of the reference, without the correction
+    Point tip_extrapolated{};  ///< with it
 };
 
 /// Levels that are measured; the reference is on the next one.
