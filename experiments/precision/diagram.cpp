@@ -11,6 +11,7 @@
 
 #include "lancet/experiments/common/file.hpp"
 #include "lancet/experiments/common/process.hpp"
+#include "lancet/experiments/precision/pareto.hpp"
 #include "lancet/kernels/error.hpp"
 
 namespace lancet::experiments::precision {
@@ -38,24 +39,35 @@ std::vector<Series> series_of(std::span<const Row> rows) {
     return all;
 }
 
+double error_of(const Row& row, Shown shown) {
+    return shown == Shown::judged ? row.errors.judged() : row.errors.quantity.value_or(0);
+}
+
+std::vector<const Row*> front_of(std::span<const Row> rows, Shown shown) {
+    std::vector<TimeAndError> points;
+    for (const Row& row : rows) points.push_back({row.seconds, error_of(row, shown)});
+    const std::vector<bool> own = pareto_front(points);
+    std::vector<const Row*> front;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (shown == Shown::judged ? rows[i].pareto : own[i]) front.push_back(&rows[i]);
+    }
+    std::stable_sort(front.begin(), front.end(), [](const Row* a, const Row* b) { return a->seconds < b->seconds; });
+    return front;
+}
+
 /// One block for each series, then the front; blocks are what gnuplot calls index.
-std::string data(const std::vector<Series>& series, std::span<const Row> rows) {
+std::string data(const std::vector<Series>& series, std::span<const Row> rows, Shown shown) {
     std::ostringstream text;
     text.precision(17);
-    const auto block = [&text](const std::string& name, const std::vector<const Row*>& points) {
+    const auto block = [&text, shown](const std::string& name, const std::vector<const Row*>& points) {
         text << "# " << name << "\n# seconds error_percent setting\n";
         for (const Row* row : points) {
-            text << row->seconds << ' ' << row->errors.judged() << " \"" << row->setting.label() << "\"\n";
+            text << row->seconds << ' ' << error_of(*row, shown) << " \"" << row->setting.label() << "\"\n";
         }
         text << "\n\n";
     };
-    std::vector<const Row*> front;
     for (const Series& one : series) block(one.name, one.rows);
-    for (const Row& row : rows) {
-        if (row.pareto) front.push_back(&row);
-    }
-    std::stable_sort(front.begin(), front.end(), [](const Row* a, const Row* b) { return a->seconds < b->seconds; });
-    block("Pareto front", front);
+    block("Pareto front", front_of(rows, shown));
     return text.str();
 }
 
@@ -66,7 +78,7 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
-std::string script(const std::vector<Series>& series, const std::string& title, const std::string& name) {
+std::string script(const std::vector<Series>& series, Shown shown, const std::string& title, const std::string& name) {
     // Okabe and Ito's colours, told apart by every kind of sight; baselines have open symbols.
     const std::vector<std::string> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                            "#E69F00", "#56B4E9", "#8B5A2B", "#777777"};
@@ -74,11 +86,13 @@ std::string script(const std::vector<Series>& series, const std::string& title, 
     std::ostringstream text;
     text << "# Draws " << name << ".svg and " << name << ".png: gnuplot " << name << ".gp\n"
          << "if (!exists(\"part\")) part = ''\n"
-         << "set logscale xy\nset grid xtics ytics mxtics mytics lc rgb '#d0d0d0', lc rgb '#ececec'\n"
+         << "set logscale xy\nset grid xtics ytics mxtics mytics lt 1 lc rgb '#cccccc', lt 1 lc rgb '#eeeeee'\n"
          << "set xlabel 'wall-clock time (s)'\n"
-         << "set ylabel 'error (%): the larger of L2 norm and quantity of interest'\n"
+         << "set ylabel 'error (%): "
+         << (shown == Shown::judged ? "the larger of L2 norm and quantity of interest" : "quantity of interest")
+         << "'\n"
          << "set format '%g'\nset title " << quoted(title) << " noenhanced\n"
-         << "set key outside right top noenhanced\nset pointsize 0.9\n";
+         << "set key outside below Left reverse samplen 1 maxrows 5 noenhanced\nset pointsize 1.3\n";
     const auto plot = [&](const std::string& terminal, const std::string& ending) {
         text << "set terminal " << terminal << "\nset output " << quoted(name + ending) << ".part\nplot \\\n";
         for (std::size_t i = 0; i < series.size(); ++i) {
@@ -91,24 +105,24 @@ std::string script(const std::vector<Series>& series, const std::string& title, 
         text << "  " << quoted(name + ".dat") << " index " << series.size()
              << " using 1:2 with steps lw 1.5 lc rgb '#000000' notitle, \\\n"
              << "  " << quoted(name + ".dat") << " index " << series.size()
-             << " using 1:2 with points pt 6 ps 1.8 lw 1.5 lc rgb '#000000' title 'Pareto front'\n"
+             << " using 1:2 with points pt 6 ps 2.2 lw 1.5 lc rgb '#000000' title 'Pareto front'\n"
              << "unset output\n";
     };
-    plot("svg size 900,600 dynamic background rgb 'white' font 'sans,14'", ".svg");
-    plot("pngcairo size 1350,900 font 'sans,15'", ".png");
+    plot("svg size 900,750 dynamic background rgb 'white' font 'sans,14'", ".svg");
+    plot("pngcairo size 1350,1100 font 'sans,15'", ".png");
     return text.str();
 }
 
 }  // namespace
 
-std::string draw(std::span<const Row> rows, const std::string& title, const std::filesystem::path& folder,
+std::string draw(std::span<const Row> rows, Shown shown, const std::string& title, const std::filesystem::path& folder,
                  const std::string& name) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Error("--plot: the folder '" + folder.string() + "' cannot be made: " + failed.message());
     const std::vector<Series> series = series_of(rows);
-    write_file(folder / (name + ".dat"), data(series, rows));
-    write_file(folder / (name + ".gp"), script(series, title, name));
+    write_file(folder / (name + ".dat"), data(series, rows, shown));
+    write_file(folder / (name + ".gp"), script(series, shown, title, name));
 
     const std::string part = ".part" + std::to_string(::getpid());
     const Command command{

@@ -7,6 +7,7 @@
 #include "lancet/experiments/bar/problem.hpp"
 #include "lancet/mesh/generate/box.hpp"
 #include "lancet/runtime/simulate/scene.hpp"
+#include "lancet/runtime/simulate/settings.hpp"
 
 namespace lancet::experiments::precision {
 
@@ -17,6 +18,8 @@ struct DynamicProblem {
     bool is_held = true;           ///< at x = 0; else it is free
     std::array<double, 3> spin{};  ///< rad/s: it starts at rest in shape, turning like a rigid body about its centre
     double duration = 1;           ///< s
+    /// What other choices are varied with, at the longest step.
+    runtime::Integrator integrator = runtime::Integrator::implicit_euler;
     double reference_step = 1e-3;  ///< s, of the coarser of the two solutions that the reference is extrapolated from
     std::vector<double> implicit_steps, explicit_steps;  ///< s
 

@@ -113,7 +113,7 @@ std::vector<Setting> other_choices(const DynamicProblem& problem, const Choice& 
     const double longest = problem.implicit_steps.front();
     std::vector<Setting> settings;
     const auto vary = [&](const char* series, const auto& change) {
-        Setting setting = base_setting(problem, Integrator::implicit_euler, longest);
+        Setting setting = base_setting(problem, problem.integrator, longest);
         change(setting);
         setting.series = series;
         settings.push_back(setting);
@@ -370,8 +370,8 @@ BudgetLine dynamic_budget(const DynamicProblem& problem, const DynamicReference&
     const auto distance = [&](const BoxField& a, const BoxField& b) {
         return percent(error_norms(a, b, reference.form).l2, reference.size.l2);
     };
-    const Setting fast = base_setting(problem, Integrator::implicit_euler, longest);
-    const Setting solved = solved_setting(problem, Integrator::implicit_euler, longest);
+    const Setting fast = base_setting(problem, problem.integrator, longest);
+    const Setting solved = solved_setting(problem, problem.integrator, longest);
     Setting once = solved;
     once.newton_tolerance = 0;
     once.tolerance = 1e-10;

@@ -194,9 +194,14 @@ void plot(std::span<const Row> rows, const std::filesystem::path& folder) {
         std::string name = part.front().problem + (part.front().variant.empty() ? "" : "-" + part.front().variant);
         std::erase_if(name, [](char c) { return c == ',' || c == '.'; });
         std::replace(name.begin(), name.end(), ' ', '-');
-        const std::string complaint = draw(part, title(part.front()), folder, name);
-        if (!complaint.empty()) complaints.insert(complaint);
+        complaints.insert(draw(part, Shown::judged, title(part.front()), folder, name));
+        if (part.front().solution.drift_energy) {
+            complaints.insert(draw(part, Shown::quantity,
+                                   title(part.front()) + ": drift of energy and angular momentum", folder,
+                                   name + "-drift"));
+        }
     });
+    complaints.erase("");
     for (const std::string& complaint : complaints) {
         std::cerr << "no pictures: " << complaint << "; " << folder.string()
                   << " has the data and the scripts, and the Debian package gnuplot-nox draws them\n";

@@ -51,7 +51,8 @@ struct Solution {
     std::string outcome = "converged";                   ///< or what is to be said of it
 };
 
-/// A run that came to nothing: its kind (diverged, stagnated, lost stability, refused, too slow, not offered), and how.
+/// A run that came to nothing: its kind (diverged, inaccurate, stagnated, lost stability, refused, too slow,
+/// not offered), and how.
 class RunFailed : public std::runtime_error {
   public:
     RunFailed(std::string kind, const std::string& explanation)

@@ -84,7 +84,7 @@ TEST(Measure, SaysWhatItLeavesOut) {
     ASSERT_EQ(results.rows.size(), 2u);
     std::vector<std::string> kinds;
     for (const Omission& one : results.omissions) kinds.push_back(one.kind);
-    EXPECT_THAT(kinds, testing::ElementsAre("refused", "lost stability", "diverged", "diverged", "too slow",
+    EXPECT_THAT(kinds, testing::ElementsAre("refused", "lost stability", "diverged", "inaccurate", "too slow",
                                             "kept with a reservation"));
     EXPECT_EQ(results.omissions[0].explanation, "a bad setting");
     EXPECT_THAT(results.omissions[4].explanation, testing::HasSubstr("300 s expected"));
@@ -106,7 +106,8 @@ TEST(PeakMemory, SeesWhatIsTouchedAndGivenBack) {
         const std::vector<char> much(size, 'x');
         EXPECT_EQ(much[size / 2], 'x');
     }
-    EXPECT_GE(*meter.bytes(), static_cast<std::int64_t>(size));
+    // The kernel's counts lag by some pages.
+    EXPECT_GE(*meter.bytes(), static_cast<std::int64_t>(size - size / 64));
     EXPECT_LT(*meter.bytes(), static_cast<std::int64_t>(2 * size));
     const PeakMemory again;
     EXPECT_LT(*again.bytes(), static_cast<std::int64_t>(size / 4));
@@ -115,7 +116,7 @@ TEST(PeakMemory, SeesWhatIsTouchedAndGivenBack) {
 TEST(Diagram, WritesDataAndScriptWhateverDraws) {
     const test::TemporaryFolder folder;
     Results results = measured(study({run_of("lancet it's", 1, 2), run_of("eigen", 3, 1)}), {.repetitions = 1});
-    const std::string complaint = draw(results.rows, "a 'title'", folder.path() / "plots", "picture");
+    const std::string complaint = draw(results.rows, Shown::judged, "a 'title'", folder.path() / "plots", "picture");
     const std::string data = test::read_text(folder.path() / "plots" / "picture.dat");
     EXPECT_THAT(data, testing::HasSubstr("# Pareto front"));
     EXPECT_THAT(test::read_text(folder.path() / "plots" / "picture.gp"), testing::HasSubstr("set logscale xy"));

@@ -21,7 +21,8 @@ mesh::Box box(int refinement, mesh::Split split = mesh::Split::five) {
 
 BoxField interpolate(const mesh::Box& of, const Function& function) {
     std::vector<Point> values;
-    for (const Point& p : mesh::box(of).nodes()) values.push_back(function(p));
+    const mesh::TetMesh mesh = mesh::box(of);
+    for (const Point& p : mesh.nodes()) values.push_back(function(p));
     return {of, values};
 }
 
