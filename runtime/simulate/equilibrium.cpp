@@ -56,7 +56,8 @@ std::string number(double value) {
 struct Held {
     Scene scene;  ///< with those nodes fixed
     std::vector<PrescribedDisplacement> prescribed;
-    int components = 0;  ///< floating ones that are held now
+    int components = 0;            ///< floating ones that are held now
+    bool fixed_nodes_hold = true;  ///< the nodes that leave the system hold every component alone
 };
 
 /// Fixes three nodes of a component as a table on three legs: one wholly, one across the line to it, one out of the
@@ -129,6 +130,8 @@ Held hold(const Scene& scene, const EquilibriumSettings& settings) {
     for (std::size_t node = 0; node < known.size(); ++node) {
         if (known[node] == 7) held.scene.fixed_nodes.push_back(static_cast<std::int32_t>(node));
     }
+    held.scene.prescribed.clear();
+    held.fixed_nodes_hold = floating_components(held.scene).empty();
     return held;
 }
 
@@ -143,7 +146,7 @@ class Search {
           numbering_(number_scene(held_.scene, settings.ordering, settings.numbering)),
           elements_(make_elements<Real>()),
           matrix_(make_operator(settings.matrix, inner_elements(), definition())),
-          preconditioner_(settings.preconditioner, inner_elements(), *matrix_, definition(), coarse_change),
+          preconditioner_(preconditioner_kind(), inner_elements(), *matrix_, definition(), coarse_change),
           conjugate_gradients_(inner_elements().kernels(), numbering_),
           filter_(slides(), numbering_),
           rest_(numbers(), 0.0),
@@ -271,6 +274,11 @@ class Search {
     }
 
     ElasticLaw law() const { return {.model = settings_.model, .tangent = settings_.tangent}; }
+    /// Rigid motions that only sliding nodes prevent would make the coarse matrix singular.
+    PreconditionerKind preconditioner_kind() const {
+        if (settings_.preconditioner != PreconditionerKind::coarse) return settings_.preconditioner;
+        return held_.fixed_nodes_hold ? PreconditionerKind::coarse : PreconditionerKind::block_jacobi;
+    }
     bool is_linear() const { return settings_.model == ElementModel::linear; }
 
     /// Sum over the free nodes of value(i) for the places i of their numbers.

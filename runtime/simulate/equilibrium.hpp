@@ -22,6 +22,8 @@ struct EquilibriumSettings {
     OperatorKind matrix = OperatorKind::edge_blocks;
     kernels::ScatterStrategy scatter = kernels::ScatterStrategy::private_copies;
     RotationSettings rotation{};
+    /// The coarse space knows of nodes that are held in all components; where those do not hold the body, it gives way
+    /// to block Jacobi, which it is made of.
     PreconditionerKind preconditioner = PreconditionerKind::coarse;
     double tolerance = 1e-9;                   ///< of the residual against the loads, or the reactions where none are
     int newton_iterations = 50;                ///< at most, for each load step
