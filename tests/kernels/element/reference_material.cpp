@@ -115,13 +115,13 @@ Tangent clamped(const Tangent& symmetric) {
 
 Eigen::Matrix<double, 9, 1> flattened(const Eigen::Matrix3d& a) {
     Eigen::Matrix<double, 9, 1> entries;
-    for (int i = 0; i < 3; ++i) entries.segment<3>(3 * i) = a.row(i).transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) entries.segment<3>(3 * i) = a.row(i).transpose();
     return entries;
 }
 
 Eigen::Matrix3d unflattened(const Eigen::Matrix<double, 9, 1>& a) {
     Eigen::Matrix3d matrix;
-    for (int i = 0; i < 3; ++i) matrix.row(i) = a.segment<3>(3 * i).transpose();
+    for (Eigen::Index i = 0; i < 3; ++i) matrix.row(i) = a.segment<3>(3 * i).transpose();
     return matrix;
 }
 

@@ -228,6 +228,7 @@ std::vector<MaterialState> material_states() {
 
 std::vector<Eigen::Matrix3d> gradients_of(const std::vector<MaterialState>& states) {
     std::vector<Eigen::Matrix3d> f;
+    f.reserve(states.size());
     for (const MaterialState& state : states) f.push_back(state.f);
     return f;
 }
