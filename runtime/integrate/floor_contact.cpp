@@ -10,7 +10,7 @@
 namespace lancet::runtime {
 
 FloorContact::FloorContact(const Floor& floor, const kernels::NodeNumbering& numbering,
-                           std::span<const double> position)
+                           std::span<const double> position, double epsilon)
     : floor_(floor), touches_(static_cast<std::size_t>(numbering.node_count), 0) {
     const double length = std::hypot(floor.normal[0], floor.normal[1], floor.normal[2]);
     if (!(std::abs(length - 1) < 1e-6)) {
@@ -22,9 +22,8 @@ FloorContact::FloorContact(const Floor& floor, const kernels::NodeNumbering& num
         size = std::max(size, std::abs(value));
     }
     for (const double value : position) size = std::max(size, std::abs(value));
-    rounding_ = 1e-12 * size;
+    rounding_ = std::max(16 * epsilon, 1e-12) * size;
     contacts_.reserve(static_cast<std::size_t>(numbering.free_count));
-    next_.reserve(contacts_.capacity());
 }
 
 double FloorContact::height(std::span<const double> position, std::size_t node) const noexcept {
@@ -53,34 +52,31 @@ void FloorContact::require_above(const kernels::NodeNumbering& numbering, std::s
     }
 }
 
-bool FloorContact::update(const kernels::NodeNumbering& numbering, std::span<const double> position,
-                          std::span<const double> velocity, std::span<const double> force,
-                          const std::array<double, 3>& gravity, double h) {
-    const mesh::Point& n = floor_->normal;
-    const double fall = std::min(0.0, n[0] * gravity[0] + n[1] * gravity[1] + n[2] * gravity[2]) * h * h;
-    next_.clear();
-    for (const Holds::Contact& contact : contacts_) {
-        const auto node = static_cast<std::size_t>(contact.node);
-        if (along_normal(force, node) < 0 && h * along_normal(velocity, node) <= rounding_) next_.push_back(contact);
-    }
-    const bool some_left = next_.size() < contacts_.size();
-    const std::size_t stayed = next_.size();
+bool FloorContact::let_go(std::span<const double> velocity, std::span<const double> force, double h) {
+    return std::erase_if(contacts_, [&](const Holds::Contact& contact) {
+               const auto node = static_cast<std::size_t>(contact.node);
+               if (along_normal(force, node) < 0 && h * along_normal(velocity, node) <= rounding_) return false;
+               touches_[node] = 0;
+               return true;
+           }) > 0;
+}
+
+bool FloorContact::add(const kernels::NodeNumbering& numbering, std::span<const double> start,
+                       std::span<const double> end) {
+    const std::size_t before = contacts_.size();
     for (std::int32_t internal = 0; internal < numbering.free_count; ++internal) {
         const auto node = static_cast<std::size_t>(internal);
         if (touches_[node] != 0 || numbering.user_of_internal[node] < 0) continue;
-        const double above = height(position, node);
-        if (above + h * along_normal(velocity, node) + fall >= -rounding_) continue;
-        // On the surface, or where the node is if that is below.
-        const double down = std::max(above, 0.0);
+        const double above = height(start, node);
+        const double lowest = above > -2 * rounding_ ? -rounding_ : above;
+        if (!(height(end, node) < lowest)) continue;
+        const double down = above > -2 * rounding_ ? above : 0.0;
         mesh::Point place;
-        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = position[4 * node + axis] - down * n[axis];
-        next_.push_back({internal, place});
+        for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = start[4 * node + axis] - down * floor_->normal[axis];
+        contacts_.push_back({internal, place});
+        touches_[node] = 1;
     }
-    const bool changed = some_left || next_.size() > stayed;
-    for (const Holds::Contact& contact : contacts_) touches_[contact.node] = 0;
-    for (const Holds::Contact& contact : next_) touches_[contact.node] = 1;
-    std::swap(contacts_, next_);
-    return changed;
+    return contacts_.size() > before;
 }
 
 void FloorContact::restore(std::span<const Holds::Contact> contacts) {
@@ -91,7 +87,7 @@ void FloorContact::restore(std::span<const Holds::Contact> contacts) {
 
 std::size_t FloorContact::bytes() const noexcept {
     using kernels::heap_bytes;
-    return heap_bytes(contacts_) + heap_bytes(next_) + heap_bytes(touches_);
+    return heap_bytes(contacts_) + heap_bytes(touches_);
 }
 
 }  // namespace lancet::runtime

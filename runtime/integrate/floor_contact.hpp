@@ -8,32 +8,33 @@
 
 namespace lancet::runtime {
 
-/// Which nodes rest on a rigid, frictionless half-space. A node comes into contact before a step whose prediction
-/// x + h v + h^2 gravity lies below the surface: for that step it is held in the direction of the normal, on the
-/// surface, or where it is if it lies below already, since lifting it would add energy. It is let go before a step at
-/// whose start the forces on it pull it off, or when it moves off.
+/// Which nodes rest on a rigid, frictionless half-space. A step is taken with the contacts known; nodes that it brings
+/// below the surface are added to them, and it is taken anew, until there are none. A contact holds the node in the
+/// direction of the normal so that it ends the step on the surface, or stays where it was if that is below: lifting it
+/// would add energy. A contact ends before a step at whose start the forces on the node pull it off.
 ///
-/// So the normal velocity that a contact takes away is lost (no bounce), and a node that others push below the surface
-/// in a step whose prediction did not is there to stay until it is pulled up: by less than h times what its velocity
-/// changed in that step.
+/// So no node passes the surface, what a contact stops is lost (no bounce), and the floor does no work on nodes that
+/// would have passed it but what it takes.
 class FloorContact {
   public:
     /// No floor.
     FloorContact() = default;
-    /// `position` at rest, xyz_ in the internal numbering. Throws lancet::Error for a normal that is not of unit
+    /// `position` at rest, xyz_ in the internal numbering; `epsilon` of the scalar in which steps are solved: heights
+    /// are known to some multiple of it. Throws lancet::Error for a normal that is not of unit
     /// length.
-    FloorContact(const Floor& floor, const kernels::NodeNumbering& numbering, std::span<const double> position);
+    FloorContact(const Floor& floor, const kernels::NodeNumbering& numbering, std::span<const double> position,
+                 double epsilon);
 
     bool exists() const noexcept { return floor_.has_value(); }
     bool is_touched() const noexcept { return !contacts_.empty(); }
     /// Throws lancet::Error if a node lies below the floor by more than rounding; names it in the user's numbering.
     void require_above(const kernels::NodeNumbering& numbering, std::span<const double> position) const;
 
-    /// Finds the contacts of a step of h seconds. `force`: on each node without the floor's, xyz_ in newtons, read
-    /// where there is contact. True if they are not of the same nodes as before.
-    bool update(const kernels::NodeNumbering& numbering, std::span<const double> position,
-                std::span<const double> velocity, std::span<const double> force, const std::array<double, 3>& gravity,
-                double h);
+    /// Ends the contacts that pull, before a step of h seconds. `force`: on each node without the floor's, xyz_ in
+    /// newtons, read at the nodes in contact. True if there were any.
+    bool let_go(std::span<const double> velocity, std::span<const double> force, double h);
+    /// Adds the nodes that a step has brought from `start` to `end` below the surface. True if there are any.
+    bool add(const kernels::NodeNumbering& numbering, std::span<const double> start, std::span<const double> end);
 
     std::span<const Holds::Contact> contacts() const noexcept { return contacts_; }
     const mesh::Point& normal() const noexcept { return floor_->normal; }
@@ -48,7 +49,7 @@ class FloorContact {
 
     std::optional<Floor> floor_;
     double rounding_ = 0;  ///< metres
-    std::vector<Holds::Contact> contacts_, next_;
+    std::vector<Holds::Contact> contacts_;
     std::vector<std::uint8_t> touches_;  ///< [node]
 };
 

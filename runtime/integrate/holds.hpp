@@ -30,8 +30,8 @@ struct HeldNode {
 class Holds {
   public:
     Holds() = default;
-    /// Takes up the prescribed displacements of a scene. Throws lancet::Error for nodes that do not exist or are fixed,
-    /// axes other than 0, 1, 2, components that are prescribed twice, and missing functions.
+    /// Takes up the prescribed displacements of a scene that validate_constraints has accepted. Throws lancet::Error
+    /// for those of fixed nodes.
     Holds(const Scene& scene, const kernels::NodeNumbering& numbering);
 
     /// Leads a node (internal numbering) to a target, in all directions or, with a unit `direction` other than zero,

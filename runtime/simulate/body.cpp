@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -63,24 +64,16 @@ class BodyOf final : public DeformableBody {
         rest_position_ = motion_.position;
         elements_.reset(scheduler, motion_.position.data());
         if (scene.floor) {
-            floor_ = FloorContact(*scene.floor, numbering_, motion_.position);
+            floor_ = FloorContact(*scene.floor, numbering_, motion_.position,
+                                  static_cast<double>(std::numeric_limits<Real>::epsilon()));
             floor_.require_above(numbering_, motion_.position);
+            before_floor_ = motion_;
         }
         if (is_explicit(settings.integrator) && !settings.force_time_step) require_stable_step(scheduler);
     }
 
     StepReport step(Scheduler& scheduler) override {
-        if (floor_.exists()) find_contacts(scheduler);
-        holds_.prepare(numbering_, time_ + settings_.time_step);
-        if (!holds_.empty()) {
-            before_hold_ = motion_.velocity;
-            holds_.apply(motion_.position, motion_.velocity, settings_.time_step);
-        }
-        const StepReport report =
-            step_->advance(scheduler, motion_, loads_, holds_.filter(),
-                           holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
-        time_ += settings_.time_step;
-        return report;
+        return floor_.exists() ? step_above_floor(scheduler) : take_step(scheduler);
     }
 
     double critical_time_step(Scheduler& scheduler) override { return critical_time_step(scheduler, 1e-6); }
@@ -313,27 +306,61 @@ class BodyOf final : public DeformableBody {
         }
     }
 
-    /// Finds the nodes that rest on the floor in the step to come.
-    void find_contacts(Scheduler& scheduler) {
-        if (floor_.is_touched()) {
-            elements_.evaluate(scheduler, motion_.position.data(),
-                               {.rotation = settings_.model != ElementModel::linear, .force = true});
-            scheduler.for_each_block(numbering_.blocks(), [&](int block) {
-                elements_.merge_force(block);
-                const std::size_t end = 4 * static_cast<std::size_t>(numbering_.block_begin[block + 1]);
-                for (std::size_t i = 4 * static_cast<std::size_t>(numbering_.block_begin[block]); i < end; ++i) {
-                    const std::size_t axis = i % 4;
-                    before_hold_[i] = axis == 3 ? 0.0
-                                                : static_cast<double>(elements_.force()[i]) + loads_.nodal[i] +
-                                                      mass_[i / 4] * loads_.gravity[axis];
-                }
-            });
-            if (settings_.model != ElementModel::linear) step_->forget_matrix();
+    StepReport take_step(Scheduler& scheduler) {
+        holds_.prepare(numbering_, time_ + settings_.time_step);
+        if (!holds_.empty()) {
+            before_hold_ = motion_.velocity;
+            holds_.apply(motion_.position, motion_.velocity, settings_.time_step);
         }
-        const bool changed = floor_.update(numbering_, motion_.position, motion_.velocity, before_hold_, loads_.gravity,
-                                           settings_.time_step);
-        holds_.set_contacts(floor_.contacts(), floor_.normal(), changed);
-        if (changed) step_->forget_acceleration();
+        const StepReport report =
+            step_->advance(scheduler, motion_, loads_, holds_.filter(),
+                           holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
+        time_ += settings_.time_step;
+        return report;
+    }
+
+    /// Takes a step again and again, with the nodes that pass the floor held on it, until none does.
+    StepReport step_above_floor(Scheduler& scheduler) {
+        let_go_of_floor(scheduler);
+        before_floor_ = motion_;
+        const double time = time_;
+        StepReport report = take_step(scheduler);
+        while (floor_.add(numbering_, before_floor_.position, motion_.position)) {
+            motion_ = before_floor_;
+            time_ = time;
+            --totals_.steps;
+            totals_.lost -= report.lost ? 1 : 0;
+            holds_.set_contacts(floor_.contacts(), floor_.normal(), true);
+            step_->forget();
+            const StepReport again = take_step(scheduler);
+            report.newton_iterations += again.newton_iterations;
+            report.conjugate_gradient_iterations += again.conjugate_gradient_iterations;
+            report.conjugate_gradient_residual = again.conjugate_gradient_residual;
+            report.repeated = report.repeated || again.repeated;
+            report.lost = again.lost;
+        }
+        return report;
+    }
+
+    /// Ends the contacts with the floor that would pull.
+    void let_go_of_floor(Scheduler& scheduler) {
+        if (!floor_.is_touched()) return;
+        elements_.evaluate(scheduler, motion_.position.data(),
+                           {.rotation = settings_.model != ElementModel::linear, .force = true});
+        scheduler.for_each_block(numbering_.blocks(), [&](int block) {
+            elements_.merge_force(block);
+            const std::size_t end = 4 * static_cast<std::size_t>(numbering_.block_begin[block + 1]);
+            for (std::size_t i = 4 * static_cast<std::size_t>(numbering_.block_begin[block]); i < end; ++i) {
+                const std::size_t axis = i % 4;
+                before_hold_[i] = axis == 3 ? 0.0
+                                            : static_cast<double>(elements_.force()[i]) + loads_.nodal[i] +
+                                                  mass_[i / 4] * loads_.gravity[axis];
+            }
+        });
+        if (settings_.model != ElementModel::linear) step_->forget_matrix();
+        if (!floor_.let_go(motion_.velocity, before_hold_, settings_.time_step)) return;
+        holds_.set_contacts(floor_.contacts(), floor_.normal(), true);
+        step_->forget_acceleration();
     }
 
     std::int32_t internal_node(std::int32_t node) const {
@@ -383,6 +410,7 @@ class BodyOf final : public DeformableBody {
     std::unique_ptr<StepMethod<Real>> step_;
     Holds holds_;
     FloorContact floor_;
+    BodyMotion before_floor_;
     BodyMotion motion_;
     BodyLoads loads_;
     kernels::AlignedVector<double> before_hold_;
