@@ -136,8 +136,11 @@ std::string draw(std::span<const Row> rows, Shown shown, const std::string& titl
         return error.what();
     }
     for (const char* ending : {".svg", ".png"}) {
-        std::filesystem::rename(folder / (name + ending + part), folder / (name + ending), failed);
-        if (failed) return "gnuplot drew no " + name + ending + ": " + failed.message();
+        const std::filesystem::path picture = folder / (name + ending);
+        std::filesystem::path drawn = picture;
+        drawn += part;
+        std::filesystem::rename(drawn, picture, failed);
+        if (failed) return "gnuplot drew no " + picture.filename().string() + ": " + failed.message();
     }
     return {};
 }

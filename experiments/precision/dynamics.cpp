@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -161,8 +162,9 @@ std::vector<Setting> lancet_settings(const DynamicProblem& problem, const Choice
     for (const Integrator integrator : implicit_integrators) {
         for (const double step : problem.implicit_steps) {
             settings.push_back(base_setting(problem, integrator, step));
-            // Iterated to a tolerance: what the order of an integrator is worth.
-            if (integrator == Integrator::implicit_euler || !choice.has_scalar("double")) continue;
+            // Iterated to a tolerance at the three longest steps: what the order of an integrator is worth.
+            const bool is_short = step < problem.implicit_steps[2];
+            if (integrator == Integrator::implicit_euler || is_short || !choice.has_scalar("double")) continue;
             settings.push_back(solved_setting(problem, integrator, step));
             settings.back().series += ", iterated";
             settings.back().newton_tolerance = 1e-6;
@@ -243,7 +245,7 @@ BoxField end_of(const DynamicProblem& problem, int level, Setting setting, const
     setting.instruction_set = choice.instruction_sets.front();
     setting.cells = problem.box(level).cells;
     progress.show(problem.problem + ": " + what + ", " + setting.label());
-    const Solution solution = simulate(problem, level, setting);
+    const Solution solution = simulate(problem, level, setting, std::numeric_limits<double>::infinity());
     for (const Point& p : solution.positions) {
         if (!std::isfinite(length(p))) throw Error(problem.problem + ": " + what + " diverged, " + setting.label());
     }
@@ -252,7 +254,7 @@ BoxField end_of(const DynamicProblem& problem, int level, Setting setting, const
 
 }  // namespace
 
-Solution simulate(const DynamicProblem& problem, int level, const Setting& setting) {
+Solution simulate(const DynamicProblem& problem, int level, const Setting& setting, double longest_seconds) {
     const runtime::Scene scene = scene_of(problem, level);
     const auto scheduler = runtime::make_scheduler(runtime::scheduler_from_string(setting.scheduler), setting.threads);
     const auto body = runtime::make_body(scene, settings_of(setting), *scheduler);
@@ -272,6 +274,10 @@ Solution simulate(const DynamicProblem& problem, int level, const Setting& setti
         const double begin = runtime::steady_seconds();
         for (; done < until; ++done) body->step(*scheduler);
         solution.seconds += runtime::steady_seconds() - begin;
+        if (solution.seconds > longest_seconds) {
+            throw RunFailed("too slow", "given up after " + format_number(solution.seconds, 3) + " s and " +
+                                            std::to_string(done) + " of " + std::to_string(steps) + " steps");
+        }
         if (!is_free) continue;
         const Kept now = kept(*body, *scheduler);
         Point change{};
@@ -339,8 +345,9 @@ Study dynamic_study(const DynamicProblem& problem, const DynamicReference& refer
     };
     for (const Setting& plain : lancet_settings(problem, choice)) {
         for (const Setting& setting : choice.machines(plain)) {
-            study.cases.push_back({setting, elements_of(setting.cells), setting.label(), 4.0 / 3,
-                                   [&problem, setting] { return simulate(problem, 0, setting); }});
+            study.cases.push_back(
+                {setting, elements_of(setting.cells), setting.label(), 4.0 / 3,
+                 [&problem, setting, limit = choice.longest_seconds] { return simulate(problem, 0, setting, limit); }});
         }
     }
     if (!problem.is_held) {

@@ -27,8 +27,9 @@ struct DynamicReference {
 [[nodiscard]] Study dynamic_study(const DynamicProblem& problem, const DynamicReference& reference,
                                   const Choice& choice);
 
-/// One run by Lancet on the mesh of a level; throws RunFailed where it is lost.
-[[nodiscard]] Solution simulate(const DynamicProblem& problem, int level, const Setting& setting);
+/// One run by Lancet on the mesh of a level; throws RunFailed where it is lost, or takes longer than `longest_seconds`.
+[[nodiscard]] Solution simulate(const DynamicProblem& problem, int level, const Setting& setting,
+                                double longest_seconds);
 
 /// The parts of the error of the fastest accurate setting (float, ten iterations a step) at the longest time step.
 [[nodiscard]] BudgetLine dynamic_budget(const DynamicProblem& problem, const DynamicReference& reference,

@@ -225,7 +225,8 @@ ExitCode body(int argc, const char* const* argv) {
     add_options(app, options);
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
     if (options.shared.quick && app.count("--repetitions") == 0) options.effort.repetitions = 1;
-    const Choice choice = make_choice(options.shared);
+    Choice choice = make_choice(options.shared);
+    choice.longest_seconds = options.effort.longest_seconds;
     const auto asked_for = [&](const std::string& name) {
         const auto& list = options.problems;
         return list.empty() || std::find(list.begin(), list.end(), name) != list.end();
