@@ -36,7 +36,7 @@ ConsistentMass::ConsistentMass(const kernels::ElementBatches<Real>& batches,
 void ConsistentMass::solve(std::span<const double> row_sums, const kernels::NodeNumbering& numbering,
                            const ConstraintFilter& filter, const System& system) const {
     const std::size_t numbers = 4 * static_cast<std::size_t>(numbering.free_count);
-    const auto [r, p, q, x] = system;
+    const std::span<double> r = system.residual, p = system.direction, q = system.product, x = system.solution;
     const auto filtered = [&](std::span<double> nodal) {
         for (int block = 0; block < numbering.blocks(); ++block) filter.apply(nodal.data(), block);
     };

@@ -106,10 +106,8 @@ TEST(Floor, DoesNotPull) {
     for (int step = 0; step < 50; ++step) body->step(*scheduler);
     // Lifted by twice its weight, it goes as if there were no floor.
     std::vector<Point> lift(body->nodes());
-    double mass = 0;
     for (std::size_t node = 0; node < lift.size(); ++node) {
         const double own = body->nodal_mass(static_cast<std::int32_t>(node));
-        mass += own;
         for (std::size_t axis = 0; axis < 3; ++axis) lift[node][axis] = -2 * own * block.scene.gravity[axis];
     }
     body->set_loads(lift);
