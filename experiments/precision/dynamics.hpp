@@ -27,7 +27,8 @@ struct DynamicReference {
 [[nodiscard]] Study dynamic_study(const DynamicProblem& problem, const DynamicReference& reference,
                                   const Choice& choice);
 
-/// One run by Lancet on the mesh of a level; throws RunFailed where it is lost, or takes longer than `longest_seconds`.
+/// One run by Lancet on the mesh of a level; throws RunFailed where it is lost, or keeps the processor busy
+/// for longer than `longest_seconds`.
 [[nodiscard]] Solution simulate(const DynamicProblem& problem, int level, const Setting& setting,
                                 double longest_seconds);
 
