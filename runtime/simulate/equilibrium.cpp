@@ -415,11 +415,12 @@ class Search {
             const bool descended = search_line(factor, norm);
             // Near the end of the digits neither energy nor residual falls any further.
             const bool is_near = norm < (is_single ? 1e-2 : 1e-6) * reference;
-            if (is_near && (!descended || norm > 0.9 * previous)) {
+            const bool is_enough = norm <= tolerance * reference;  // the loop says so
+            if (is_near && !is_enough && (!descended || norm > 0.9 * previous)) {
                 report_.residual = norm / reference;
                 return Outcome::rounding;
             }
-            if (!descended) return Outcome::failed;
+            if (!descended && !is_enough) return Outcome::failed;
         }
     }
 
