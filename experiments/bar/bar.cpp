@@ -108,9 +108,16 @@ std::vector<Job> all_jobs(const Run& run, const Choice& choice) {
     for (const Entry& entry : entries()) {
         if (!asked_for(run.options, entry)) continue;
         const std::vector<Job> plain = jobs_of(entry, entry.sequences.front().front(), choice, run.folder);
-        const bool single = entry.sequences.size() == 1 && entry.sequences.front().size() == 1;
-        if (single) {
-            jobs.insert(jobs.end(), plain.begin(), plain.end());
+        const bool needs_errors = std::any_of(entry.sequences.begin(), entry.sequences.end(),
+                                              [](const auto& sequence) { return sequence.size() > 1; });
+        if (!needs_errors) {
+            for (std::size_t i = 0; i < plain.size(); ++i) {
+                std::vector<Job> ends;
+                for (const auto& sequence : entry.sequences) {
+                    ends.push_back(jobs_of(entry, sequence.front(), choice, run.folder)[i]);
+                }
+                jobs.push_back(fastest_of(ends, run.options.problem, run.problem, run.progress));
+            }
             continue;
         }
         if (!can_search) {

@@ -28,15 +28,33 @@ double fastest(const JobResult& result) {
     return seconds;
 }
 
+/// The problem to t = 1 s.
+ProblemOptions for_a_second(const ProblemOptions& options) {
+    ProblemOptions one_second = options;
+    one_second.steps = std::max(1, static_cast<int>(std::round(1 / options.time_step)));
+    return one_second;
+}
+
 }  // namespace
+
+Job fastest_of(const std::vector<Job>& jobs, const ProblemOptions& options, const Problem& problem,
+               Progress& progress) {
+    constexpr int timings = 3;
+    const bool is_one =
+        std::all_of(jobs.begin(), jobs.end(), [&](const Job& job) { return job.arguments == jobs.front().arguments; });
+    if (is_one) return jobs.front();
+    const std::vector<JobResult> results =
+        run_jobs(jobs, timings, for_a_second(options), {}, problem.mesh.nodes().size(), progress);
+    const auto best = std::min_element(results.begin(), results.end(),
+                                       [](const JobResult& a, const JobResult& b) { return fastest(a) < fastest(b); });
+    return jobs[static_cast<std::size_t>(best - results.begin())];
+}
 
 Job search(const Entry& entry, const Choice& choice, std::size_t variation, const ProblemOptions& options,
            const Problem& problem, const std::vector<double>& reference, const std::filesystem::path& folder,
            Progress& progress) {
-    constexpr int timings = 3;
     const std::size_t nodes = problem.mesh.nodes().size();
-    ProblemOptions one_second = options;
-    one_second.steps = static_cast<int>(std::round(1 / one_second.time_step));
+    const ProblemOptions one_second = for_a_second(options);
     const auto attempt = [&](const std::vector<std::string>& arguments) {
         Trial trial{jobs_of(entry, arguments, choice, folder)[variation]};
         progress.show("looking for " + format_number(accurate_error_percent, 3) + " %: " + trial.job.label());
@@ -71,11 +89,7 @@ Job search(const Entry& entry, const Choice& choice, std::size_t variation, cons
         if (end) ends.push_back(end->job);
     }
     if (ends.empty()) return least_wrong->job;
-    if (ends.size() == 1) return ends.front();
-    const std::vector<JobResult> results = run_jobs(ends, timings, one_second, {}, nodes, progress);
-    const auto best = std::min_element(results.begin(), results.end(),
-                                       [](const JobResult& a, const JobResult& b) { return fastest(a) < fastest(b); });
-    return ends[static_cast<std::size_t>(best - results.begin())];
+    return fastest_of(ends, options, problem, progress);
 }
 
 }  // namespace lancet::experiments::bar

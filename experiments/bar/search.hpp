@@ -10,6 +10,10 @@
 
 namespace lancet::experiments::bar {
 
+/// The fastest of some jobs, each timed a few times for a second; for a single one, or the same twice, without that.
+[[nodiscard]] Job fastest_of(const std::vector<Job>& jobs, const ProblemOptions& options, const Problem& problem,
+                             Progress& progress);
+
 /// Of the choices that `entry` has (see Entry::sequences), the fastest whose error at t = 1 s is at most
 /// accurate_error_percent against the positions `reference`; for the job number `variation` of jobs_of(). Errors fall
 /// along a sequence, so each is searched by bisection; where several sequences get there, their ends are timed against

@@ -12,9 +12,9 @@ struct Entry {
     std::string method;   ///< lancet, eigen, thesis
     std::string setting;  ///< original, original-every-step, default, accurate
     std::string program;  ///< the worker's file name, in the folder of `bar` itself
-    /// Options of the worker for this setting: sequences of rising accuracy and cost. Where there is more than one
-    /// choice, the first member of each sequence with an error of at most accurate_error_percent at t = 1 s is looked
-    /// for, and the fastest of these is taken (the least wrong choice when no sequence gets there).
+    /// Options of the worker for this setting: sequences of rising accuracy and cost. Of a sequence with more than one
+    /// member the first with an error of at most accurate_error_percent at t = 1 s is looked for. The fastest of what
+    /// the sequences end with is taken (the least wrong choice when no sequence gets there).
     std::vector<std::vector<std::vector<std::string>>> sequences;
     bool all_schedulers = false;  ///< whether the worker takes --scheduler, --isa and --operator
 };
