@@ -124,14 +124,8 @@ Energies ExplicitStep<Real>::energies(Scheduler& scheduler, const BodyMotion& mo
     energies.elastic =
         elements_->evaluate(scheduler, motion.position.data(),
                             {.rotation = !is_linear(), .force = false, .energy = true, .keep_gradients = false});
-    energies.gravity =
-        -sum_over_nodes(scheduler, *numbering_, std::span<double>(partial_), [&](std::size_t node, std::size_t at) {
-            double work = 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                work += mass_[node] * loads.gravity[axis] * (motion.position[at + axis] - rest_position[at + axis]);
-            }
-            return work;
-        });
+    energies.gravity = gravity_energy(scheduler, *numbering_, std::span<double>(partial_), mass_, loads.gravity,
+                                      motion.position, rest_position);
     return energies;
 }
 

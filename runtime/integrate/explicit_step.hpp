@@ -18,7 +18,7 @@ template <class Real>
 class ExplicitStep final : public StepMethod<Real> {
   public:
     /// - nodal_mass: [internal node], kilograms; a node without mass keeps its velocity
-    /// `elements`, with gradients in batches, must outlive it.
+    /// `elements` must outlive it; their layout is one that a matrix-free product reads.
     ExplicitStep(ElasticElements<Real>& elements, std::vector<double> nodal_mass, const Settings& settings);
 
     StepReport advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,

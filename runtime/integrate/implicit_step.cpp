@@ -549,13 +549,8 @@ Energies ImplicitStep<Real, Accumulate>::energies(Scheduler& scheduler, const Bo
     Energies energies;
     energies.kinetic = kinetic_energy(scheduler, motion.velocity);
     energies.elastic = elastic_energy(scheduler, motion.position.data());
-    energies.gravity = -sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
-        double work = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            work += mass_[node] * loads.gravity[axis] * (motion.position[at + axis] - rest_position[at + axis]);
-        }
-        return work;
-    });
+    energies.gravity = gravity_energy(scheduler, *numbering_, std::span<double>(partial_), mass_, loads.gravity,
+                                      motion.position, rest_position);
     return energies;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -18,6 +19,19 @@ double sum_over_nodes(Scheduler& scheduler, const kernels::NodeNumbering& number
             sum += value(static_cast<std::size_t>(node), 4 * static_cast<std::size_t>(node));
         }
         return sum;
+    });
+}
+
+/// The potential energy of weight in joules, zero at `rest`. Positions are xyz_ nodal vectors, `mass` is [node].
+inline double gravity_energy(Scheduler& scheduler, const kernels::NodeNumbering& numbering, std::span<double> partial,
+                             std::span<const double> mass, const std::array<double, 3>& gravity,
+                             std::span<const double> position, std::span<const double> rest) {
+    return -sum_over_nodes(scheduler, numbering, partial, [&](std::size_t node, std::size_t at) {
+        double work = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            work += mass[node] * gravity[axis] * (position[at + axis] - rest[at + axis]);
+        }
+        return work;
     });
 }
 

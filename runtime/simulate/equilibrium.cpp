@@ -9,7 +9,7 @@
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/components.hpp"
-#include "lancet/runtime/schedule/ordered_sum.hpp"
+#include "lancet/runtime/integrate/nodal_sum.hpp"
 #include "lancet/runtime/simulate/scene_layout.hpp"
 #include "lancet/runtime/solve/conjugate_gradients.hpp"
 
@@ -90,10 +90,8 @@ void hold_component(const mesh::TetMesh& mesh, std::span<const std::int32_t> nod
         prescribed.push_back({first, axis, none});
         if (axis != along) prescribed.push_back({second, axis, none});
     }
-    // The third leg keeps the body from turning about the line: it acts where the normal does, but not along the line.
-    Point across = normal;
-    across[static_cast<std::size_t>(along)] = 0;
-    prescribed.push_back({third, largest(across), none});
+    // What is left is a turn about the line, which moves the third node along the normal.
+    prescribed.push_back({third, largest(normal), none});
 }
 
 Held hold(const Scene& scene, const EquilibriumSettings& settings) {
@@ -284,13 +282,8 @@ class Search {
     /// Sum over the free nodes of value(i) for the places i of their numbers.
     template <class Value>
     double sum(const Value& value) {
-        return ordered_sum(*scheduler_, std::span<double>(partial_), [&](int block) {
-            double total = 0;
-            for (std::int32_t node = numbering_.block_begin[block]; node < numbering_.block_begin[block + 1]; ++node) {
-                for (std::size_t axis = 0; axis < 3; ++axis) total += value(4 * static_cast<std::size_t>(node) + axis);
-            }
-            return total;
-        });
+        return sum_over_nodes(*scheduler_, numbering_, std::span<double>(partial_),
+                              [&](std::size_t, std::size_t at) { return value(at) + value(at + 1) + value(at + 2); });
     }
 
     /// Moves what is prescribed to where it is at a load factor.

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lancet/runtime/simulate/floating.hpp"
 #include "lancet/runtime/simulate/loads.hpp"
 #include "lancet/runtime/simulate/settings.hpp"
 
@@ -73,15 +74,5 @@ struct EquilibriumReport {
 /// in all six rigid motions, naming them, unless `hold_floating` is set.
 EquilibriumReport find_equilibrium(const Scene& scene, const EquilibriumSettings& settings, Scheduler& scheduler,
                                    std::span<Point> positions);
-
-/// A component of the mesh that the constraints leave free to move as a rigid body.
-struct FloatingComponent {
-    std::int32_t component;   ///< as numbered by mesh::components
-    std::int32_t nodes;       ///< how many it has
-    std::int32_t first_node;  ///< the lowest of them
-    int free_motions;         ///< how many of the six rigid motions are left
-};
-/// The floating components of a scene, by its fixed nodes and prescribed displacements.
-std::vector<FloatingComponent> floating_components(const Scene& scene);
 
 }  // namespace lancet::runtime

@@ -1,9 +1,10 @@
-#include <cmath>
+#include "lancet/runtime/simulate/floating.hpp"
+
+#include <algorithm>
 
 #include <Eigen/Dense>
 
 #include "lancet/mesh/components.hpp"
-#include "lancet/runtime/simulate/equilibrium.hpp"
 #include "lancet/runtime/simulate/scene_layout.hpp"
 
 namespace lancet::runtime {
@@ -12,7 +13,7 @@ std::vector<FloatingComponent> floating_components(const Scene& scene) {
     using Motions = Eigen::Matrix<double, 6, 6>;
     validate_constraints(scene);
     const mesh::Components parts = mesh::components(scene.mesh);
-    const std::span<const Point> nodes = scene.mesh.nodes();
+    const std::span<const mesh::Point> nodes = scene.mesh.nodes();
     const auto count = static_cast<std::size_t>(parts.count);
     std::vector<FloatingComponent> components(count, {0, 0, -1, 6});
     std::vector<Eigen::Vector3d> centre(count, Eigen::Vector3d::Zero());

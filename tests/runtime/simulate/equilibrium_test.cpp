@@ -1,12 +1,9 @@
 // Static equilibria, reached by stepping, against solutions that were not computed with this library.
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "tests/runtime/solve/bodies_under_test.hpp"
+#include "tests/verification/reference_table.hpp"
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
@@ -63,20 +60,6 @@ TEST(Equilibrium, OfASmallBarIsThatOfNewtonsMethod) {
     EXPECT_LE((positions_of(*body) - expected).cwiseAbs().maxCoeff(), 1e-4 * deflection);
 }
 
-std::vector<std::vector<double>> numbers_of(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    std::vector<std::vector<double>> rows;
-    std::string line;
-    std::getline(stream, line);
-    while (std::getline(stream, line)) {
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream fields(line);
-        rows.emplace_back();
-        for (double number = 0; fields >> number;) rows.back().push_back(number);
-    }
-    return rows;
-}
-
 class DiscreteReference : public ::testing::TestWithParam<ElementModel> {};
 INSTANTIATE_TEST_SUITE_P(Models, DiscreteReference, ::testing::Values(ElementModel::linear, ElementModel::corotational),
                          [](const auto& instance) {
@@ -85,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(Models, DiscreteReference, ::testing::Values(ElementMod
 
 TEST_P(DiscreteReference, UncutBeamHasTheSameNodalDisplacements) {
     const bool is_linear = GetParam() == ElementModel::linear;
-    const auto folder = std::filesystem::path(LANCET_SHARED_DIR) / "reference" / "discrete";
-    const auto expected = numbers_of(folder / (is_linear ? "D2_uncut_linear.csv" : "D2_uncut_corot.csv"));
+    const auto folder = reference_folder() / "discrete";
+    const auto expected = read_numbers(folder / (is_linear ? "D2_uncut_linear.csv" : "D2_uncut_corot.csv"));
     if (expected.empty()) GTEST_SKIP() << "no reference displacements in " << folder;
     runtime::Scene scene;
     // The beam along z, clamped at z = 0, gravity along x.
