@@ -11,6 +11,7 @@ endif()
 find_package(Threads REQUIRED)
 
 if(NOT LANCET_KERNELS_ONLY)
+  find_package(Boost 1.74 REQUIRED)  # headers only: Multiprecision
   find_package(pugixml REQUIRED)
   find_package(ZLIB REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)

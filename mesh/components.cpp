@@ -18,9 +18,13 @@ std::int32_t root(std::vector<std::int32_t>& parent, std::int32_t node) {
 }  // namespace
 
 Components components(const TetMesh& mesh) {
-    std::vector<std::int32_t> parent(mesh.nodes().size());
+    return components(mesh.nodes().size(), mesh.tetrahedra());
+}
+
+Components components(std::size_t nodes, std::span<const Tetrahedron> tetrahedra) {
+    std::vector<std::int32_t> parent(nodes);
     std::iota(parent.begin(), parent.end(), 0);
-    for (const Tetrahedron& t : mesh.tetrahedra()) {
+    for (const Tetrahedron& t : tetrahedra) {
         for (std::size_t n = 1; n < 4; ++n) {
             const std::int32_t a = root(parent, t[0]);
             const std::int32_t b = root(parent, t[n]);
@@ -30,14 +34,14 @@ Components components(const TetMesh& mesh) {
         }
     }
     Components result;
-    result.of_node.resize(mesh.nodes().size());
+    result.of_node.resize(nodes);
     for (std::size_t n = 0; n < parent.size(); ++n) {
         const auto node = static_cast<std::int32_t>(n);
         const std::int32_t lowest = root(parent, node);
         result.of_node[n] = lowest == node ? result.count++ : result.of_node[lowest];
     }
-    result.of_element.reserve(mesh.tetrahedra().size());
-    for (const Tetrahedron& t : mesh.tetrahedra()) result.of_element.push_back(result.of_node[t[0]]);
+    result.of_element.reserve(tetrahedra.size());
+    for (const Tetrahedron& t : tetrahedra) result.of_element.push_back(result.of_node[t[0]]);
     return result;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lancet/mesh/tet_mesh.hpp"
@@ -15,5 +17,7 @@ struct Components {
 };
 
 Components components(const TetMesh& mesh);
+/// The same for elements given by their nodes, of which there are `nodes`; a node of no element is a component.
+Components components(std::size_t nodes, std::span<const Tetrahedron> tetrahedra);
 
 }  // namespace lancet::mesh

@@ -1,0 +1,167 @@
+#include "lancet/mesh/cut/element_cells.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace lancet::mesh {
+
+ElementCells::ElementCells() : plane_is_cut_(4, false), cells_{whole_tetrahedron(pool_)}, part_of_cell_{0} {}
+
+int ElementCells::add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut) {
+    plane_is_cut_.push_back(is_cut);
+    return pool_.add_plane(plane, corners);
+}
+
+bool ElementCells::divide(int part, const Facets& facets, const std::array<Point, 4>& corners, bool extends) {
+    bool is_touched = false;
+    for (const Facet& facet : *facets) {
+        if (may_touch(facet, corners)) divide(part, facet, corners, extends, is_touched);
+    }
+    if (is_touched) facets_.push_back(facets);
+    return is_touched;
+}
+
+void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 4>& corners, bool extends,
+                          bool& is_touched) {
+    const int plane = add_plane(facet.plane, corners, true);
+    std::vector<int> borders;
+    const auto border = [&](std::size_t k) {
+        while (borders.size() <= k) {
+            borders.push_back(add_plane(facet.borders[borders.size()].plane, corners, false));
+        }
+        return borders[k];
+    };
+    const std::size_t count = cells_.size();
+    bool is_cover = false;
+    for (std::size_t c = 0; c < count; ++c) {
+        if (part_of_cell_[c] != part) continue;
+        if (!is_crossed(pool_, cells_[c], plane)) {
+            is_cover = is_cover || has_face_in(pool_, cells_[c], plane);
+            continue;
+        }
+        Cell inside = cells_[c];
+        std::vector<Cell> outside;
+        bool misses = false;
+        for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
+            if (auto pieces = split(pool_, inside, border(k))) {
+                outside.push_back(std::move(pieces->first));
+                inside = std::move(pieces->second);
+            } else {
+                misses = !std::ranges::any_of(inside.faces, [&](const Cell::Face& face) {
+                    return std::ranges::any_of(face.points,
+                                               [&](int point) { return pool_.side(border(k), point) > 0; });
+                });
+            }
+        }
+        if (misses || !is_crossed(pool_, inside, plane)) continue;
+        if (extends) {
+            inside = cells_[c];
+            outside.clear();
+            for (std::size_t k = 0; k < facet.borders.size(); ++k) {
+                if (facet.borders[k].is_outer) continue;
+                auto pieces = split(pool_, inside, border(k));
+                if (!pieces) continue;
+                outside.push_back(std::move(pieces->first));
+                inside = std::move(pieces->second);
+            }
+        }
+        auto halves = split(pool_, inside, plane);
+        cells_[c] = std::move(halves->first);
+        cells_.push_back(std::move(halves->second));
+        for (Cell& cell : outside) cells_.push_back(std::move(cell));
+        part_of_cell_.resize(cells_.size(), part);
+        is_touched = true;
+    }
+    if (is_cover) {
+        for (std::size_t k = 0; k < facet.borders.size(); ++k) border(k);
+        covers_.push_back({plane, borders});
+        is_touched = true;
+    }
+}
+
+std::vector<int> ElementCells::regroup() {
+    std::vector<int> group(cells_.size());
+    std::iota(group.begin(), group.end(), 0);
+    const auto find = [&](int cell) {
+        while (group[cell] != cell) cell = group[cell] = group[group[cell]];
+        return cell;
+    };
+    // Open areas lie in planes of borders, which divide cells without separating them.
+    struct Side {
+        int cell;
+        std::size_t face;
+    };
+    std::map<int, std::array<std::vector<Side>, 2>> open;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        for (std::size_t f = 0; f < cells_[c].faces.size(); ++f) {
+            const HalfSpace& half = cells_[c].faces[f].half;
+            if (half.plane < 4 || plane_is_cut_[static_cast<std::size_t>(half.plane)]) continue;
+            open[half.plane][half.side > 0 ? 1 : 0].push_back({static_cast<int>(c), f});
+        }
+    }
+    for (const auto& [plane, sides] : open) {
+        for (const Side& below : sides[0]) {
+            for (const Side& above : sides[1]) {
+                const int a = find(below.cell), b = find(above.cell);
+                if (a == b || part_of_cell_[below.cell] != part_of_cell_[above.cell]) continue;
+                if (are_joined(pool_, polygon(cells_[below.cell], below.face), polygon(cells_[above.cell], above.face),
+                               covers_)) {
+                    group[std::max(a, b)] = std::min(a, b);
+                }
+            }
+        }
+    }
+    std::vector<std::pair<int, int>> order;  // {part before, first cell}
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (find(static_cast<int>(c)) == static_cast<int>(c)) order.emplace_back(part_of_cell_[c], c);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<int> before;
+    std::map<int, int> number;
+    for (const auto& [part, cell] : order) {
+        number[cell] = static_cast<int>(before.size());
+        before.push_back(part);
+    }
+    for (std::size_t c = 0; c < cells_.size(); ++c) part_of_cell_[c] = number[find(static_cast<int>(c))];
+    parts_ = static_cast<int>(before.size());
+    return before;
+}
+
+PartMoments ElementCells::moments(int part) const {
+    PartMoments moments = empty_moments();
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (part_of_cell_[c] == part) add_cell(moments, pool_, cells_[c]);
+    }
+    return moments;
+}
+
+bool ElementCells::touches(int part, int corner) const {
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (part_of_cell_[c] != part) continue;
+        for (const Cell::Face& face : cells_[c].faces) {
+            for (const int point : face.points) {
+                if (pool_.coordinates(point)[static_cast<std::size_t>(corner)] == 1) return true;
+            }
+        }
+    }
+    return false;
+}
+
+int ElementCells::part_at(const Barycentric& place) const {
+    int best = 0;
+    double best_depth = -std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        double depth = std::numeric_limits<double>::infinity();
+        for (const Cell::Face& face : cells_[c].faces) {
+            depth = std::min(depth, face.half.side * pool_.value(face.half.plane, place));
+        }
+        if (depth <= best_depth) continue;
+        best_depth = depth;
+        best = part_of_cell_[c];
+    }
+    return best;
+}
+
+}  // namespace lancet::mesh

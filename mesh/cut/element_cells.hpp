@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lancet/mesh/cut/cell.hpp"
+#include "lancet/mesh/cut/facet.hpp"
+
+namespace lancet::mesh {
+
+/// One tetrahedron divided by cuts: convex cells, and the parts that they form. Cells that share an open area belong to
+/// one part; a facet that ends inside of the element may divide cells and yet separate nothing.
+class ElementCells {
+  public:
+    using Facets = std::shared_ptr<const std::vector<Facet>>;
+
+    ElementCells();
+
+    /// Divides the cells of a part by the facets, whose functions are taken at `corners`: the places of the corners at
+    /// rest, or where the part has moved them. With `extends`, a facet that crosses a cell goes on behind its outer
+    /// borders, to the faces of the element. Returns true where a facet crosses a cell or covers a face of one.
+    bool divide(int part, const Facets& facets, const std::array<Point, 4>& corners, bool extends);
+    /// Numbers the parts anew, those of lower parts first. Returns the part that each one was in before.
+    std::vector<int> regroup();
+
+    int parts() const noexcept { return parts_; }
+    PartMoments moments(int part) const;
+    std::span<const Cell> cells() const noexcept { return cells_; }
+    int part_of_cell(std::size_t cell) const { return part_of_cell_[cell]; }
+    const PlanePool& pool() const noexcept { return pool_; }
+    /// Facets in the plane of faces of cells.
+    std::span<const Cover> covers() const noexcept { return covers_; }
+    /// True where the plane is a facet's, which separates what lies on its two sides.
+    bool is_cut(int plane) const { return plane_is_cut_[static_cast<std::size_t>(plane)]; }
+    /// The part in whose inside, or else on whose border, a place lies.
+    int part_at(const Barycentric& place) const;
+    /// True where the part holds the corner, on its border or inside.
+    bool touches(int part, int corner) const;
+
+  private:
+    struct FacetPlanes {
+        int plane = -1;
+        std::vector<int> borders{};
+    };
+    void divide(int part, const Facet& facet, const std::array<Point, 4>& corners, bool extends, bool& is_touched);
+    int add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut);
+
+    PlanePool pool_;
+    std::vector<bool> plane_is_cut_;
+    std::vector<Cell> cells_;
+    std::vector<int> part_of_cell_;
+    std::vector<Cover> covers_;
+    std::vector<Facets> facets_;  ///< which the pool refers to
+    int parts_ = 1;
+};
+
+}  // namespace lancet::mesh

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "lancet/mesh/cut/numbers.hpp"
+#include "lancet/mesh/tet_mesh.hpp"
+
+namespace lancet::mesh {
+
+/// An affine function of the place, normal . (x - origin), or any other whose values at nodes are taken as they come.
+/// Its zeros are a plane.
+class Plane {
+  public:
+    using Normal = std::array<Exact, 3>;
+
+    Plane(const Point& origin, const Normal& normal);
+    explicit Plane(std::function<double(const Point&)> function) : function_(std::move(function)) {}
+
+    Bounded value(const Point& place) const;
+    Exact exact(const Point& place) const;
+
+  private:
+    Point origin_{};
+    Normal normal_{};
+    std::array<Bounded, 3> rounded_normal_{};
+    std::function<double(const Point&)> function_{};
+};
+
+/// A flat piece of a cut surface: where the plane's function is zero and no border's negative.
+struct Facet {
+    Plane plane;
+    struct Border {
+        Plane plane;
+        bool is_outer = true;  ///< false: another facet of the surface goes on behind it
+    };
+    std::vector<Border> borders{};
+    /// A box around the facet, somewhat larger than needed; infinite where the facet is.
+    using Box = std::array<Point, 2>;
+    Box bounds;
+};
+
+/// The smallest box around two, and whether a tetrahedron's box and another have a place in common.
+Facet::Box united(const Facet::Box& a, const Facet::Box& b);
+bool overlap(const Facet::Box& box, const std::array<Point, 4>& corners);
+/// False where the facet neither crosses the tetrahedron nor touches it. True may be wrong.
+bool may_touch(const Facet& facet, const std::array<Point, 4>& corners);
+
+}  // namespace lancet::mesh

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace lancet::mesh {
+
+/// A double and a bound of its distance to the exact value of the expression that made it: the fast number type of
+/// predicates, which knows when it does not know.
+struct Bounded {
+    double value = 0;
+    double error = 0;
+
+    /// -1, +1 or 0 for an exact zero; meaningful where `is_certain`.
+    int sign() const noexcept { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+    bool is_certain() const noexcept { return std::abs(value) > error || error == 0; }
+    /// True where the value is exact to a relative `tolerance`.
+    bool is_precise(double tolerance) const noexcept { return error <= tolerance * std::abs(value); }
+
+    static Bounded rounded(double value, double error) noexcept {
+        // The bound itself is rounded: a few units more than it can lose.
+        constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
+        return {value, (error + unit * std::abs(value)) * (1 + 8 * unit)};
+    }
+    friend Bounded operator+(const Bounded& a, const Bounded& b) noexcept {
+        if (a.value == 0 && a.error == 0) return b;
+        if (b.value == 0 && b.error == 0) return a;
+        return rounded(a.value + b.value, a.error + b.error);
+    }
+    friend Bounded operator-(const Bounded& a) noexcept { return {-a.value, a.error}; }
+    friend Bounded operator-(const Bounded& a, const Bounded& b) noexcept { return a + -b; }
+    friend Bounded operator*(const Bounded& a, const Bounded& b) noexcept {
+        const bool is_zero = (a.value == 0 && a.error == 0) || (b.value == 0 && b.error == 0);
+        if (is_zero) return {};
+        // What underflows is smaller than the smallest normal number.
+        return rounded(a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error +
+                                              a.error * b.error + std::numeric_limits<double>::min());
+    }
+};
+
+/// A sum, difference or product of doubles without rounding: mantissa * 2^exponent.
+class Exact {
+  public:
+    Exact() = default;
+    Exact(double value) {
+        if (value == 0) return;
+        int exponent = 0;
+        const double fraction = std::frexp(value, &exponent);
+        mantissa_ = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+        exponent_ = exponent - 53;
+    }
+
+    int sign() const { return mantissa_.sign(); }
+    /// The value as a double with its bound: half a unit in the last place.
+    Bounded bounded() const {
+        if (sign() == 0) return {};
+        const auto magnitude = static_cast<Integer>(abs(mantissa_));
+        const auto bits = static_cast<int>(msb(magnitude)) + 1;
+        const int drop = bits > 64 ? bits - 64 : 0;
+        const auto leading = static_cast<std::uint64_t>(magnitude >> drop);
+        const double value = std::ldexp(static_cast<double>(leading), exponent_ + drop);
+        const bool is_exact = drop == 0 && bits <= 53;
+        return {sign() * value, is_exact ? 0.0 : value * std::numeric_limits<double>::epsilon()};
+    }
+    double value() const { return bounded().value; }
+
+    friend Exact operator+(const Exact& a, const Exact& b) {
+        if (a.sign() == 0) return b;
+        if (b.sign() == 0) return a;
+        Exact sum;
+        sum.exponent_ = std::min(a.exponent_, b.exponent_);
+        sum.mantissa_ = (a.mantissa_ << (a.exponent_ - sum.exponent_)) + (b.mantissa_ << (b.exponent_ - sum.exponent_));
+        return sum;
+    }
+    friend Exact operator-(const Exact& a) {
+        Exact negative = a;
+        negative.mantissa_ = -negative.mantissa_;
+        return negative;
+    }
+    friend Exact operator-(const Exact& a, const Exact& b) { return a + -b; }
+    friend Exact operator*(const Exact& a, const Exact& b) {
+        Exact product;
+        product.mantissa_ = a.mantissa_ * b.mantissa_;
+        product.exponent_ = a.exponent_ + b.exponent_;
+        return product;
+    }
+
+  private:
+    using Integer = boost::multiprecision::cpp_int;
+    Integer mantissa_ = 0;
+    int exponent_ = 0;
+};
+
+template <class Number>
+Number dot(const std::array<Number, 4>& a, const std::array<Number, 4>& b) {
+    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+}
+
+template <class Number>
+Number dot(const std::array<Number, 3>& a, const std::array<Number, 3>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class Number>
+std::array<Number, 3> cross(const std::array<Number, 3>& a, const std::array<Number, 3>& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The vector orthogonal to three others in four dimensions: dot(d, cross(a, b, c)) = det(d, a, b, c).
+template <class Number>
+std::array<Number, 4> cross(const std::array<Number, 4>& a, const std::array<Number, 4>& b,
+                            const std::array<Number, 4>& c) {
+    const auto minor = [&](std::size_t i, std::size_t j, std::size_t k) {
+        return a[i] * (b[j] * c[k] - b[k] * c[j]) - a[j] * (b[i] * c[k] - b[k] * c[i]) +
+               a[k] * (b[i] * c[j] - b[j] * c[i]);
+    };
+    return {minor(1, 2, 3), -minor(0, 2, 3), minor(0, 1, 3), -minor(0, 1, 2)};
+}
+
+}  // namespace lancet::mesh

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lancet/mesh/cut/facet.hpp"
+#include "lancet/mesh/cut/part_moments.hpp"
+
+namespace lancet::mesh {
+
+/// Planes and points of one tetrahedron in barycentric coordinates. A plane is what an affine function takes for
+/// values at the four corners; a point is where three planes meet. On which side of a plane a point lies is decided
+/// exactly: with bounded rounding errors first, in integers where these do not suffice. The values at the corners of a
+/// face, and so all decisions about what lies in it, are the same in both elements that share it.
+class PlanePool {
+  public:
+    /// Planes 0 to 3 are the faces opposite the corners: the functions that are one at a corner and zero at the others.
+    PlanePool();
+
+    /// The plane of `source`, whose values are taken at `corners`; `source` must outlive the pool. Returns its number.
+    int add_plane(const Plane& source, const std::array<Point, 4>& corners);
+    /// The trace of a plane of another pool on the face with the corners `face` there: its values at these three become
+    /// those at corners 0, 1, 2, and that at corner 3 is zero. Returns its number.
+    int add_trace(const PlanePool& other, int plane, const std::array<int, 3>& face);
+    /// The point in which three planes meet, which must exist and lie in the tetrahedron. Returns its number.
+    int add_point(const std::array<int, 3>& planes);
+
+    int planes() const noexcept { return static_cast<int>(planes_.size()); }
+    /// -1, 0 or +1: the side of the plane on which the point lies.
+    int side(int plane, int point) const;
+    /// -1, 0 or +1: the sign of the plane's value at a corner.
+    int side_of_corner(int plane, int corner) const;
+    /// The plane's function at a place, relative to its largest value at a corner; rounded.
+    double value(int plane, const Barycentric& place) const;
+    /// To nearly full relative precision, and exactly zero where they are.
+    const Barycentric& coordinates(int point) const { return points_[static_cast<std::size_t>(point)].coordinates; }
+
+  private:
+    struct StoredPlane {
+        const Plane* source = nullptr;  ///< nothing for the faces of the tetrahedron
+        std::array<Point, 4> corners{};
+        std::array<bool, 4> is_kept{};  ///< false: the value at the corner is zero whatever the source says
+        std::array<Bounded, 4> values{};
+        mutable std::shared_ptr<const std::array<Exact, 4>> exact{};  ///< once it was asked for
+    };
+    struct StoredPoint {
+        std::array<int, 3> planes{};
+        std::array<Bounded, 4> weights{};  ///< homogeneous coordinates, their sum positive
+        Barycentric coordinates{};
+        mutable std::shared_ptr<const std::array<Exact, 4>> exact{};  ///< weights, once they were asked for
+    };
+    const StoredPlane& plane(int number) const { return planes_[static_cast<std::size_t>(number)]; }
+    const std::array<Exact, 4>& exact_values(int plane) const;
+    const std::array<Exact, 4>& exact_weights(const StoredPoint& point) const;
+
+    std::vector<StoredPlane> planes_;
+    std::vector<StoredPoint> points_;
+};
+
+}  // namespace lancet::mesh
