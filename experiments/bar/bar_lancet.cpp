@@ -53,7 +53,7 @@ void add_lancet_options(CLI::App& app, LancetOptions& o) {
         ->check(CLI::IsMember({"state", "prediction"}));
     app.add_option("--rotation", o.rotation, "robust, quaternion, polar or svd")
         ->check(CLI::IsMember({"robust", "quaternion", "polar", "svd"}));
-    app.add_option("--mass", o.mass, "lumped or consistent");
+    app.add_option("--mass", o.mass, "lumped, weighted-diagonal, consistent or fraction");
     app.add_option("--ordering", o.ordering, "Of the nodes")->check(CLI::IsMember({"none", "hilbert", "rcm"}));
     app.add_option("--cg-iterations", o.cg_iterations, "Iterations of every solve, at most");
     app.add_option("--cg-tolerance", o.cg_tolerance, "End a solve when the preconditioned residual is so small");

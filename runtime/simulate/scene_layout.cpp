@@ -3,6 +3,7 @@
 #include <string>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/runtime/cut/part_mass.hpp"
 
 namespace lancet::runtime {
 
@@ -53,29 +54,10 @@ ElementMaterials element_materials(const Scene& scene) {
     return materials;
 }
 
-namespace {
-
-/// The share of an element's mass at each corner, from its consistent mass rho V (1 + delta_ij) / 20.
-std::array<double, 4> corner_shares(MassKind kind) {
-    std::array<double, 4> share{};
-    double total = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; j < 4; ++j) {
-            const double entry = (i == j ? 2.0 : 1.0) / 20;
-            if (kind != MassKind::weighted_diagonal || i == j) share[i] += entry;
-        }
-        total += share[i];
-    }
-    for (double& value : share) value /= total;
-    return share;
-}
-
-}  // namespace
-
 std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
                                  const kernels::NodeNumbering& numbering, MassKind kind) {
     std::vector<double> mass(static_cast<std::size_t>(numbering.node_count), 0.0);
-    const std::array<double, 4> share = corner_shares(kind);
+    const std::array<double, 4> share = corner_masses(kind, mesh::PartMoments{});
     const std::span<const mesh::Tetrahedron> tetrahedra = scene.mesh.tetrahedra();
     for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
         const double whole = materials.parameters[materials.of_element[e]].density *

@@ -27,7 +27,7 @@ struct ElementMaterials {
 /// Throws lancet::Error if region 0 has no material.
 ElementMaterials element_materials(const Scene& scene);
 
-/// Nodal masses, [internal node], in kilograms: the row sums of the mass matrix, or its weighted diagonal.
+/// Nodal masses, [internal node], in kilograms: see corner_masses.
 std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
                                  const kernels::NodeNumbering& numbering, MassKind kind = MassKind::lumped);
 

@@ -13,7 +13,7 @@ MatrixFree<Real>::MatrixFree(ElasticElements<Real>& elements, const OperatorDefi
 template <class Real>
 void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors) {
     this->set_factors(factors);
-    if (mass_ == MassKind::lumped || element_mass_factor_ == factors.mass) return;
+    if (mass_ != MassKind::consistent || element_mass_factor_ == factors.mass) return;
     element_mass_factor_ = factors.mass;
     for (std::size_t lane = 0; lane < element_mass_.size(); ++lane) {
         element_mass_[lane] =

@@ -30,24 +30,6 @@ OperatorKind operator_kind_from_string(std::string_view name) {
     throw Error("unknown operator '" + std::string(name) + "'; expected matrix-free, edge-blocks or block-rows");
 }
 
-std::string_view to_string(MassKind kind) noexcept {
-    switch (kind) {
-        case MassKind::lumped:
-            return "lumped";
-        case MassKind::weighted_diagonal:
-            return "weighted-diagonal";
-        default:
-            return "consistent";
-    }
-}
-
-MassKind mass_kind_from_string(std::string_view name) {
-    for (const MassKind kind : {MassKind::lumped, MassKind::weighted_diagonal, MassKind::consistent}) {
-        if (to_string(kind) == name) return kind;
-    }
-    throw Error("unknown mass '" + std::string(name) + "'; expected lumped, weighted-diagonal or consistent");
-}
-
 template <class Real>
 Operator<Real>::Operator(ElasticElements<Real>& elements, std::vector<double> nodal_mass)
     : elements_(&elements),

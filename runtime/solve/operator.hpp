@@ -7,6 +7,7 @@
 
 #include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/solve/elastic_elements.hpp"
+#include "lancet/runtime/solve/mass_kind.hpp"
 
 namespace lancet::runtime {
 
@@ -18,16 +19,6 @@ enum class OperatorKind {
 };
 std::string_view to_string(OperatorKind kind) noexcept;
 OperatorKind operator_kind_from_string(std::string_view name);
-
-/// The mass of a body: what it is lumped to, and how.
-enum class MassKind {
-    lumped,             ///< row sums of the consistent mass at each corner
-    weighted_diagonal,  ///< its diagonal, scaled to the element's mass (Hinton, Rock, Zienkiewicz 1976); for linear
-                        ///< tetrahedra the same as the row sums
-    consistent          ///< int rho phi_i phi_j
-};
-std::string_view to_string(MassKind kind) noexcept;
-MassKind mass_kind_from_string(std::string_view name);
 
 /// y = A z for A = mass_factor M + stiffness_factor K, symmetric positive definite, over the free nodes. `z` is read at
 /// all nodes. An operator is the sum of nodal masses (the row sums of M) and terms whose rows add up to zero.

@@ -213,15 +213,17 @@ TEST(Statics, BadInputIsRefusedWithTheReason) {
         "rotated");
 }
 
-TEST(Statics, TheWeightedDiagonalOfLinearTetrahedraIsTheirRowSum) {
+TEST(Statics, EveryLumpingOfWholeLinearTetrahedraIsTheirRowSum) {
     const runtime::Scene scene = box({3, 2, 2}, {1, 2, 3});
     const auto numbering = runtime::number_scene(scene, mesh::OrderingKind::none, {});
     const auto materials = element_materials(scene);
     const auto rows = nodal_masses(scene, materials, numbering, runtime::MassKind::lumped);
     const auto weighted = nodal_masses(scene, materials, numbering, runtime::MassKind::weighted_diagonal);
+    const auto fraction = nodal_masses(scene, materials, numbering, runtime::MassKind::fraction);
     double total = 0;
     for (std::size_t node = 0; node < rows.size(); ++node) {
         EXPECT_NEAR(weighted[node], rows[node], 1e-12);
+        EXPECT_NEAR(fraction[node], rows[node], 1e-12);
         total += weighted[node];
     }
     EXPECT_NEAR(total, 6000, 1e-9);  // 1000 kg / m^3
