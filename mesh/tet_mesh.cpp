@@ -1,12 +1,18 @@
 #include "lancet/mesh/tet_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/inspect.hpp"
 
 namespace lancet::mesh {
+
+double area(const Point& a, const Point& b, const Point& c) {
+    const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    return std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+}
 
 double signed_volume(const Point& a, const Point& b, const Point& c, const Point& d) {
     const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};

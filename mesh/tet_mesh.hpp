@@ -19,6 +19,8 @@ using Triangle = std::array<std::int32_t, 3>;
 /// Signed volume det(b - a, c - a, d - a) / 6: positive where d lies on the side of the triangle a, b, c that its
 /// right-handed normal points to.
 double signed_volume(const Point& a, const Point& b, const Point& c, const Point& d);
+/// The area of a triangle.
+double area(const Point& a, const Point& b, const Point& c);
 
 /// A valid mesh of linear tetrahedra; it does not change after construction.
 ///

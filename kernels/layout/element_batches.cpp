@@ -66,7 +66,7 @@ template <class Real>
 ElementBatches<Real> make_element_batches(std::span<const Point> positions, std::span<const Tetrahedron> tetrahedra,
                                           std::span<const std::int32_t> regions,
                                           std::span<const ElasticParameters> parameters, const NodeNumbering& numbering,
-                                          ScatterStrategy strategy, int width) {
+                                          ScatterStrategy strategy, int width, std::span<const double> fractions) {
     ElementBatches<Real> batches;
     batches.width = width;
     batches.scatter = ScatterPlan(strategy, numbering);
@@ -95,6 +95,7 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                 const bool is_padding = place >= elements[block].size();
                 const std::int32_t e = is_padding ? elements[block].front() : elements[block][place];
                 const TetrahedronGeometry geometry = tetrahedron_geometry(positions, tetrahedra[e]);
+                const double volume = fractions.empty() ? geometry.volume : fractions[e] * geometry.volume;
                 const ElasticParameters& material = parameters[regions[e]];
                 if (!is_padding) batches.slot_of_element[e] = static_cast<std::int32_t>(batch * lanes + lane);
                 for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -108,10 +109,10 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                 for (std::size_t entry = 0; entry < 9; ++entry) {
                     rest[entry * lanes] = static_cast<Real>(geometry.gradients[1 + entry / 3][entry % 3]);
                 }
-                rest[9 * lanes] = is_padding ? Real(0) : static_cast<Real>(std::sqrt(geometry.volume * material.mu));
+                rest[9 * lanes] = is_padding ? Real(0) : static_cast<Real>(std::sqrt(volume * material.mu));
                 rest[10 * lanes] = static_cast<Real>(material.lambda / material.mu);
                 batches.mass[batch * lanes + lane] =
-                    is_padding ? Real(0) : static_cast<Real>(material.density * geometry.volume);
+                    is_padding ? Real(0) : static_cast<Real>(material.density * volume);
             }
         }
     }
@@ -124,10 +125,10 @@ template struct ElementBatches<double>;
 template ElementBatches<float> make_element_batches<float>(std::span<const Point>, std::span<const Tetrahedron>,
                                                            std::span<const std::int32_t>,
                                                            std::span<const ElasticParameters>, const NodeNumbering&,
-                                                           ScatterStrategy, int);
+                                                           ScatterStrategy, int, std::span<const double>);
 template ElementBatches<double> make_element_batches<double>(std::span<const Point>, std::span<const Tetrahedron>,
                                                              std::span<const std::int32_t>,
                                                              std::span<const ElasticParameters>, const NodeNumbering&,
-                                                             ScatterStrategy, int);
+                                                             ScatterStrategy, int, std::span<const double>);
 
 }  // namespace lancet::kernels

@@ -23,7 +23,7 @@ struct ElasticParameters {
 template <class Real>
 struct ElementBatches {
     /// Numbers per lane of `rest`: the gradients of the shape functions of corners 1, 2, 3 (row by row; that of corner
-    /// 0 is minus their sum), sqrt(V mu) and lambda / mu.
+    /// 0 is minus their sum), sqrt(v V mu) with v the fraction that is there and lambda / mu.
     static constexpr int rest_entries = 11;
 
     int width = 1;
@@ -31,7 +31,7 @@ struct ElementBatches {
     AlignedVector<std::int32_t> nodes;            ///< [batch][corner][lane] 4 * node, its place in a nodal vector
     AlignedVector<std::int32_t> targets;          ///< [batch][corner][lane] 4 * target in the buffer of `scatter`
     AlignedVector<Real> rest;                     ///< [batch][entry][lane]
-    AlignedVector<Real> mass;                     ///< [batch][lane] rho V, zero in padding
+    AlignedVector<Real> mass;                     ///< [batch][lane] rho v V, zero in padding
     std::vector<std::int32_t> slot_of_element;    ///< batch * width + lane of each element of the mesh
     ScatterPlan scatter;
 
@@ -43,11 +43,12 @@ struct ElementBatches {
 /// Lays the elements out.
 /// - positions, tetrahedra: the mesh at rest, in the user's numbering
 /// - parameters: of each element's region, `regions` one per element
+/// - fractions: how much of each element is there, for parts of cut ones; empty: all of each
 template <class Real>
 ElementBatches<Real> make_element_batches(std::span<const Point> positions, std::span<const Tetrahedron> tetrahedra,
                                           std::span<const std::int32_t> regions,
                                           std::span<const ElasticParameters> parameters, const NodeNumbering& numbering,
-                                          ScatterStrategy strategy, int width);
+                                          ScatterStrategy strategy, int width, std::span<const double> fractions = {});
 
 /// Gradients of the four shape functions and the volume of a linear tetrahedron.
 struct TetrahedronGeometry {

@@ -60,7 +60,8 @@ class CutMesh {
                   std::span<const Point> positions = {});
 
     const TetMesh& mesh() const noexcept { return *mesh_; }
-    bool is_cut() const noexcept { return parts_.size() > mesh_->tetrahedra().size() || !cells_.empty(); }
+    /// True where a cut has touched anything.
+    bool is_cut() const noexcept { return !cells_.empty(); }
 
     /// The copies at the corners of each part.
     std::span<const Tetrahedron> parts() const noexcept { return parts_; }
@@ -69,12 +70,14 @@ class CutMesh {
     std::span<const std::int32_t> parent_of_part() const noexcept { return parent_of_part_; }
     PartMoments moments(std::int32_t part) const;
 
-    /// All copies, and the parts of one element.
+    /// The node of each copy.
     std::span<const std::int32_t> node_of_copy() const noexcept { return node_of_copy_; }
     /// The copy that each was separated from; -1 for the first of a node.
     std::span<const std::int32_t> parent_of_copy() const noexcept { return parent_of_copy_; }
     std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
     std::vector<std::int32_t> parts_of_element(std::int32_t element) const;
+    /// The elements around a node of the mesh.
+    std::span<const std::int32_t> star(std::int32_t node) const { return base_->stars.of(node); }
     /// The nodes' places at rest, for each copy.
     std::vector<Point> rest_positions() const;
 

@@ -237,7 +237,8 @@ class Search {
         return ElasticElements<Scalar>(
             kernels,
             kernels::make_element_batches<Scalar>(scene().mesh.nodes(), scene().mesh.tetrahedra(), materials.of_element,
-                                                  materials.parameters, numbering_, settings_.scatter, kernels.width),
+                                                  materials.parameters, numbering_, settings_.scatter, kernels.width,
+                                                  materials.fractions),
             numbering_, gradient_layout(settings_.matrix, law()), settings_.rotation, law());
     }
 

@@ -31,13 +31,13 @@ class Loads {
 
     std::vector<Point> take() { return std::move(loads_); }
 
-  private:
     void require_node(const std::string& what, std::int32_t node) const {
         if (node >= 0 && static_cast<std::size_t>(node) < positions_.size()) return;
         throw Error(what + ": node " + std::to_string(node) + " does not exist; the mesh has nodes 0 to " +
                     std::to_string(static_cast<std::int64_t>(positions_.size()) - 1));
     }
 
+  private:
     std::span<const Point> positions_;
     std::vector<Point> loads_;
 };
@@ -62,9 +62,9 @@ std::vector<Point> external_loads(const Scene& scene) {
         const auto& [triangles, force] = scene.tractions[k];
         const std::string what = "traction " + std::to_string(k);
         for (const mesh::Triangle& triangle : triangles) {
-            const Point a = loads.edge(what, triangle[0], triangle[1]), b = loads.edge(what, triangle[0], triangle[2]);
-            const double area =
-                std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]) / 2;
+            for (const std::int32_t node : triangle) loads.require_node(what, node);
+            const auto nodes = scene.mesh.nodes();
+            const double area = mesh::area(nodes[triangle[0]], nodes[triangle[1]], nodes[triangle[2]]);
             if (!(area > 0)) {
                 throw Error(what + ": triangle " + std::to_string(triangle[0]) + ", " + std::to_string(triangle[1]) +
                             ", " + std::to_string(triangle[2]) + " has no area");

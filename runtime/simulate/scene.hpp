@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lancet/kernels/layout/element_batches.hpp"
+#include "lancet/mesh/cut/part_moments.hpp"
 #include "lancet/mesh/tet_mesh.hpp"
 
 namespace lancet::runtime {
@@ -53,9 +54,21 @@ struct Floor {
     std::array<double, 3> normal;  ///< of unit length, out of the floor
 };
 
+/// Which elements of a scene's mesh are parts of cut ones: tetrahedra of which only a part is there.
+struct ElementParts {
+    std::vector<std::int32_t> place{};         ///< [element] its place in `moments`, -1 where it is whole; or empty
+    std::vector<mesh::PartMoments> moments{};  ///< of what is there
+
+    bool empty() const noexcept { return place.empty(); }
+    mesh::PartMoments of(std::size_t element) const {
+        return empty() || place[element] < 0 ? mesh::PartMoments{} : moments[static_cast<std::size_t>(place[element])];
+    }
+};
+
 /// What is simulated: a body at rest, what it is made of, what holds and what pulls it.
 struct Scene {
     mesh::TetMesh mesh;
+    ElementParts parts{};  ///< of a scene with cuts; see divided_scene.hpp
     /// By region of the mesh; regions that are not named take the material of region 0, which must be there.
     std::map<int, Material> materials{{0, Material{}}};
     std::vector<std::int32_t> fixed_nodes;       ///< held for good: they leave the system of equations

@@ -51,17 +51,20 @@ ElementMaterials element_materials(const Scene& scene) {
         const auto found = place.find(region);
         materials.of_element.push_back(found != place.end() ? found->second : place[0]);
     }
+    for (std::size_t e = 0; e < scene.parts.place.size(); ++e) {
+        materials.fractions.push_back(scene.parts.of(e).fraction);
+    }
     return materials;
 }
 
 std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
                                  const kernels::NodeNumbering& numbering, MassKind kind) {
     std::vector<double> mass(static_cast<std::size_t>(numbering.node_count), 0.0);
-    const std::array<double, 4> share = corner_masses(kind, mesh::PartMoments{});
     const std::span<const mesh::Tetrahedron> tetrahedra = scene.mesh.tetrahedra();
     for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
         const double whole = materials.parameters[materials.of_element[e]].density *
                              kernels::tetrahedron_geometry(scene.mesh.nodes(), tetrahedra[e]).volume;
+        const std::array<double, 4> share = corner_masses(kind, scene.parts.of(e));
         for (std::size_t corner = 0; corner < 4; ++corner) {
             mass[numbering.internal_of_user[tetrahedra[e][corner]]] += share[corner] * whole;
         }

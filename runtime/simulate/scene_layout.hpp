@@ -22,6 +22,7 @@ kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
 struct ElementMaterials {
     std::vector<kernels::ElasticParameters> parameters;
     std::vector<std::int32_t> of_element;
+    std::vector<double> fractions;  ///< how much of each element is there; empty: all
 };
 
 /// Throws lancet::Error if region 0 has no material.

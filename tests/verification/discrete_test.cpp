@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/verification/reference_table.hpp"
+#include "tests/verification/discrete_beam.hpp"
 #include <gtest/gtest.h>
 
 #include "lancet/runtime/simulate/equilibrium.hpp"
@@ -28,27 +28,6 @@ void PrintTo(const DiscreteCase& discrete, std::ostream* stream) {
 
 class Discrete : public ::testing::TestWithParam<DiscreteCase> {
   protected:
-    /// The beam of 0.03 x 0.06 x 0.2 m, clamped at z = 0, under gravity along x; empty where the folder is absent.
-    static runtime::Scene scene_of(const DiscreteCase& discrete) {
-        const auto folder = reference_folder() / "discrete";
-        mesh::TetMesh::Definition definition;
-        for (const auto& row : read_numbers(folder / (std::string("mesh_") + discrete.mesh + "_nodes.csv"))) {
-            definition.nodes.push_back({row[1], row[2], row[3]});
-        }
-        for (const auto& row : read_numbers(folder / (std::string("mesh_") + discrete.mesh + "_tets.csv"))) {
-            definition.tetrahedra.push_back({static_cast<std::int32_t>(row[1]), static_cast<std::int32_t>(row[2]),
-                                             static_cast<std::int32_t>(row[3]), static_cast<std::int32_t>(row[4])});
-        }
-        runtime::Scene scene;
-        scene.mesh = mesh::TetMesh(std::move(definition));
-        for (std::size_t node = 0; node < scene.mesh.nodes().size(); ++node) {
-            if (scene.mesh.nodes()[node][2] == 0) scene.fixed_nodes.push_back(static_cast<std::int32_t>(node));
-        }
-        scene.materials = {{0, {.young_modulus = 3e5, .poisson_ratio = 0.35, .density = 1070}}};
-        scene.gravity = {9.81, 0, 0};
-        return scene;
-    }
-
     static std::vector<Point> displacements_of(const DiscreteCase& discrete) {
         std::vector<Point> displacements;
         for (const auto& row : read_numbers(reference_folder() / "discrete" / discrete.displacements)) {
@@ -57,18 +36,10 @@ class Discrete : public ::testing::TestWithParam<DiscreteCase> {
         return displacements;
     }
 
-    /// The largest difference of two displacements, against the largest displacement.
+    /// The largest difference from the displacements of the reference, against the largest of them.
     static double difference(std::span<const Point> rest, std::span<const Point> positions,
-                             std::span<const Point> displacements) {
-        double largest = 0, difference = 0;
-        for (std::size_t node = 0; node < rest.size(); ++node) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double expected = displacements[node][axis];
-                largest = std::max(largest, std::abs(expected));
-                difference = std::max(difference, std::abs(positions[node][axis] - rest[node][axis] - expected));
-            }
-        }
-        return difference / largest;
+                             std::span<const Point> expected) {
+        return largest_difference(displacements(rest, positions), expected);
     }
 };
 
@@ -86,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(Discrete, DisplacementsAgreeToNineDigits) {
     const std::vector<Point> expected = displacements_of(GetParam());
     if (expected.empty()) GTEST_SKIP() << "no reference displacements in " << reference_folder() / "discrete";
-    const runtime::Scene scene = scene_of(GetParam());
+    const runtime::Scene scene = discrete_beam(GetParam().mesh);
     ASSERT_EQ(expected.size(), scene.mesh.nodes().size());
     const auto scheduler = runtime::make_scheduler(runtime::default_scheduler, 2);
     for (const ScalarMode scalar : {ScalarMode::double_precision, ScalarMode::mixed}) {
@@ -112,7 +83,7 @@ TEST_P(Discrete, DisplacementsAgreeToNineDigits) {
 TEST_P(Discrete, FloatSaysHowFarItCame) {
     const std::vector<Point> expected = displacements_of(GetParam());
     if (expected.empty()) GTEST_SKIP() << "no reference displacements in " << reference_folder() / "discrete";
-    const runtime::Scene scene = scene_of(GetParam());
+    const runtime::Scene scene = discrete_beam(GetParam().mesh);
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
     runtime::EquilibriumSettings settings;
     settings.model = GetParam().model;

@@ -1,0 +1,183 @@
+#include "lancet/runtime/cut/divided_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "lancet/kernels/error.hpp"
+#include "lancet/mesh/cut/boundary_shares.hpp"
+#include "lancet/runtime/simulate/loads.hpp"
+
+namespace lancet::runtime {
+
+namespace {
+
+void add(mesh::PartMoments& sum, const mesh::PartMoments& moments) {
+    sum.fraction += moments.fraction;
+    for (std::size_t i = 0; i < 4; ++i) {
+        sum.first[i] += moments.first[i];
+        for (std::size_t j = 0; j < 4; ++j) sum.second[i][j] += moments.second[i][j];
+    }
+}
+
+/// Parts thinner than this are taken as so thick: far below the rounding of every sum that they enter, and thick enough
+/// that a float holds their stiffness.
+constexpr double smallest_fraction = 1e-20;
+
+mesh::PartMoments not_too_thin(const mesh::PartMoments& moments) {
+    if (moments.fraction >= smallest_fraction) return moments;
+    mesh::PartMoments thicker;
+    thicker.fraction = smallest_fraction;
+    for (double& first : thicker.first) first *= smallest_fraction;
+    for (auto& row : thicker.second) {
+        for (double& second : row) second *= smallest_fraction;
+    }
+    return thicker;
+}
+
+/// The parts as elements, with their moments.
+void take_parts(const Scene& scene, const mesh::CutMesh& cut, Scene& divided, mesh::TetMesh::Definition& definition) {
+    // The first part of each element keeps its place; the others follow behind.
+    std::map<std::int32_t, std::vector<std::int32_t>> elements_of;  // cut element -> its elements in the definition
+    std::map<std::int32_t, mesh::PartMoments> moments_of;
+    for (std::size_t part = 0; part < cut.parts().size(); ++part) {
+        const std::int32_t element = cut.element_of_part()[part];
+        if (cut.cells(element) == nullptr) {
+            definition.tetrahedra.push_back(cut.parts()[part]);
+            definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(element)]);
+            continue;
+        }
+        const mesh::PartMoments moments = cut.moments(static_cast<std::int32_t>(part));
+        std::vector<std::int32_t>& known = elements_of[element];
+        const auto same = std::ranges::find_if(known, [&](std::int32_t other) {
+            return definition.tetrahedra[static_cast<std::size_t>(other)] == cut.parts()[part];
+        });
+        if (same != known.end()) {
+            add(moments_of.at(*same), moments);
+            continue;
+        }
+        const auto place = static_cast<std::int32_t>(definition.tetrahedra.size());
+        known.push_back(place);
+        moments_of[place] = moments;
+        definition.tetrahedra.push_back(cut.parts()[part]);
+        definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(element)]);
+    }
+    for (const auto& [element, places] : elements_of) {
+        if (places.size() == 1) moments_of.erase(places.front());  // it is whole
+    }
+    if (moments_of.empty()) return;
+    divided.parts.place.assign(definition.tetrahedra.size(), -1);
+    for (const auto& [place, moments] : moments_of) {
+        divided.parts.place[static_cast<std::size_t>(place)] = static_cast<std::int32_t>(divided.parts.moments.size());
+        divided.parts.moments.push_back(not_too_thin(moments));
+    }
+}
+
+/// The element of a cut mesh that has all these nodes; the first, where there are several.
+template <std::size_t Count>
+std::int32_t element_with(const mesh::CutMesh& cut, const std::array<std::int32_t, Count>& nodes) {
+    for (const std::int32_t element : cut.star(nodes[0])) {
+        const mesh::Tetrahedron& corners = cut.mesh().tetrahedra()[static_cast<std::size_t>(element)];
+        if (std::ranges::all_of(nodes, [&](auto node) { return std::ranges::find(corners, node) != corners.end(); })) {
+            return element;
+        }
+    }
+    return -1;
+}
+
+/// A dead force on a triangle or an edge, spread over the parts there. Returns false where no cut touches it.
+template <std::size_t Count>
+bool spread(const mesh::CutMesh& cut, const std::array<std::int32_t, Count>& nodes, const Point& force,
+            std::vector<NodalLoad>& loads) {
+    const std::int32_t element = element_with(cut, nodes);
+    const mesh::ElementCells* cells = element < 0 ? nullptr : cut.cells(element);
+    if (element < 0) return false;
+    const mesh::Tetrahedron& corners = cut.mesh().tetrahedra()[static_cast<std::size_t>(element)];
+    const auto corner_of = [&](std::int32_t node) {
+        return static_cast<int>(std::ranges::find(corners, node) - corners.begin());
+    };
+    std::vector<mesh::BoundaryShare> shares;
+    if (cells == nullptr) {
+        mesh::BoundaryShare whole;
+        for (const std::int32_t node : nodes) {
+            whole.first[static_cast<std::size_t>(corner_of(node))] = 1.0 / static_cast<double>(Count);
+        }
+        shares.push_back(whole);
+    } else if constexpr (Count == 3) {
+        shares = face_shares(*cells, 6 - corner_of(nodes[0]) - corner_of(nodes[1]) - corner_of(nodes[2]));
+    } else {
+        shares = edge_shares(*cells, corner_of(nodes[0]), corner_of(nodes[1]));
+    }
+    const std::vector<std::int32_t> parts = cut.parts_of_element(element);
+    for (const mesh::BoundaryShare& share : shares) {
+        const mesh::Tetrahedron& copies =
+            cut.parts()[static_cast<std::size_t>(parts[static_cast<std::size_t>(share.part)])];
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (share.first[k] == 0) continue;
+            loads.push_back(
+                {copies[k], {share.first[k] * force[0], share.first[k] * force[1], share.first[k] * force[2]}});
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+Scene divided(const Scene& scene, const mesh::CutMesh& cut) {
+    if (!scene.parts.empty()) throw Error("cuts: the scene has been divided before; divide the one without cuts");
+    if (scene.mesh.nodes().size() != cut.mesh().nodes().size() ||
+        !std::ranges::equal(scene.mesh.tetrahedra(), cut.mesh().tetrahedra())) {
+        throw Error("cuts: the cut mesh is not the scene's");
+    }
+    // What the loads refer to is checked in the scene as it was given.
+    (void)external_loads(scene);
+    Scene result = scene;
+    mesh::TetMesh::Definition definition;
+    definition.nodes = cut.rest_positions();
+    definition.region_names = scene.mesh.region_names();
+    take_parts(scene, cut, result, definition);
+    const auto all_copies = [&](std::span<const std::int32_t> nodes) {
+        std::vector<std::int32_t> copies;
+        for (const std::int32_t node : nodes) {
+            const std::vector<std::int32_t> of_node = cut.copies_of_node(node);
+            copies.insert(copies.end(), of_node.begin(), of_node.end());
+        }
+        return copies;
+    };
+    for (const auto& [name, nodes] : scene.mesh.node_sets()) definition.node_sets[name] = all_copies(nodes);
+    result.mesh = mesh::TetMesh(std::move(definition));
+    result.fixed_nodes = all_copies(scene.fixed_nodes);
+    result.prescribed.clear();
+    for (const PrescribedDisplacement& prescribed : scene.prescribed) {
+        for (const std::int32_t copy : cut.copies_of_node(prescribed.node)) {
+            result.prescribed.push_back({copy, prescribed.axis, prescribed.displacement});
+        }
+    }
+    result.edge_loads.clear();
+    for (const EdgeLoad& load : scene.edge_loads) {
+        const Point &a = scene.mesh.nodes()[static_cast<std::size_t>(load.nodes[0])],
+                    &b = scene.mesh.nodes()[static_cast<std::size_t>(load.nodes[1])];
+        const double length = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+        const Point force{length * load.force_per_length[0], length * load.force_per_length[1],
+                          length * load.force_per_length[2]};
+        if (!spread(cut, load.nodes, force, result.nodal_loads)) result.edge_loads.push_back(load);
+    }
+    result.tractions.clear();
+    for (const Traction& traction : scene.tractions) {
+        Traction left{.triangles = {}, .force_per_area = traction.force_per_area};
+        for (const auto& triangle : traction.triangles) {
+            const double area = mesh::area(scene.mesh.nodes()[static_cast<std::size_t>(triangle[0])],
+                                           scene.mesh.nodes()[static_cast<std::size_t>(triangle[1])],
+                                           scene.mesh.nodes()[static_cast<std::size_t>(triangle[2])]);
+            const Point force{area * traction.force_per_area[0], area * traction.force_per_area[1],
+                              area * traction.force_per_area[2]};
+            if (!spread(cut, triangle, force, result.nodal_loads)) left.triangles.push_back(triangle);
+        }
+        if (!left.triangles.empty()) result.tractions.push_back(std::move(left));
+    }
+    return result;
+}
+
+}  // namespace lancet::runtime
