@@ -314,6 +314,24 @@ std::vector<Point> CutMesh::rest_positions() const {
     return positions;
 }
 
+CutMesh::FaceState CutMesh::face_state(std::int32_t part, int corner) const {
+    const std::int32_t element = element_of_part_[static_cast<std::size_t>(part)];
+    if (base_->neighbours[static_cast<std::size_t>(element)][static_cast<std::size_t>(corner)] < 0) {
+        return FaceState::outer;
+    }
+    const auto joints = joints_.find(key_of(element, corner));
+    if (joints == joints_.end()) return FaceState::joined;
+    const bool is_joined = std::ranges::any_of(
+        joints->second, [&](const auto& pair) { return pair.first == part || pair.second == part; });
+    return is_joined ? FaceState::joined : FaceState::opened;
+}
+
+std::vector<std::int32_t> CutMesh::touched_elements() const {
+    std::vector<std::int32_t> elements;
+    for (const auto& [element, cells] : cells_) elements.push_back(element);
+    return elements;
+}
+
 const ElementCells* CutMesh::cells(std::int32_t element) const {
     const auto found = cells_.find(element);
     return found == cells_.end() ? nullptr : found->second.cells.get();

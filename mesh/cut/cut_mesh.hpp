@@ -84,6 +84,16 @@ class CutMesh {
     /// The part in which a place of an element lies; where it lies on a cut, one of those beside.
     MaterialPoint material_point(std::int32_t element, const Barycentric& place) const;
 
+    /// What is behind the face of a part that is opposite a corner.
+    enum class FaceState {
+        joined,  ///< a part of the neighbour that it hangs together with
+        opened,  ///< nothing, since a cut runs along the face
+        outer    ///< nothing: it is of the body's own surface
+    };
+    FaceState face_state(std::int32_t part, int corner) const;
+
+    /// The elements that cuts touch, ascending.
+    std::vector<std::int32_t> touched_elements() const;
     /// The cells of an element that cuts touch, or nothing.
     const ElementCells* cells(std::int32_t element) const;
 

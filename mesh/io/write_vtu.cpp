@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/io/atomic_file.hpp"
@@ -66,6 +67,54 @@ void check(const std::filesystem::path& path, const std::vector<VtuArray>& array
     }
 }
 
+/// What a mesh says of itself, beside the user's arrays.
+struct OwnArrays {
+    std::vector<std::pair<std::string, std::span<const std::uint8_t>>> of_points{};
+    std::span<const std::int32_t> regions{};
+};
+
+void write(const std::filesystem::path& path, const VtuGrid& grid, const VtuContent& content, const OwnArrays& own) {
+    const std::size_t tetrahedra = grid.tetrahedra.size(), cells = tetrahedra + grid.triangles.size();
+    std::vector<std::int32_t> connectivity;
+    std::vector<std::int64_t> ends;
+    std::vector<std::uint8_t> types;
+    const auto add_cells = [&](const auto& shapes, std::uint8_t type) {
+        for (const auto& shape : shapes) {
+            connectivity.insert(connectivity.end(), shape.begin(), shape.end());
+            ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+            types.push_back(type);
+        }
+    };
+    constexpr std::uint8_t vtk_triangle = 5, vtk_tetrahedron = 10;
+    add_cells(grid.tetrahedra, vtk_tetrahedron);
+    add_cells(grid.triangles, vtk_triangle);
+    const std::span<const double> coordinates(grid.points.empty() ? nullptr : grid.points.front().data(),
+                                              3 * grid.points.size());
+
+    AtomicFile file(path);
+    Appender appender(file);
+    file << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
+         << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
+         << "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"";
+    file.number(grid.points.size()) << "\" NumberOfCells=\"";
+    file.number(cells) << "\">\n      <Points>\n";
+    appender.add("Float64", "Points", 3, coordinates);
+    file << "      </Points>\n      <Cells>\n";
+    appender.add("Int32", "connectivity", 1, std::span<const std::int32_t>(connectivity));
+    appender.add("Int64", "offsets", 1, std::span<const std::int64_t>(ends));
+    appender.add("UInt8", "types", 1, std::span<const std::uint8_t>(types));
+    file << "      </Cells>\n      <PointData>\n";
+    add_arrays(content.point_data, appender);
+    for (const auto& [name, values] : own.of_points) appender.add("UInt8", name, 1, values);
+    file << "      </PointData>\n      <CellData>\n";
+    if (!own.regions.empty()) appender.add("Int32", "region", 1, own.regions);
+    add_arrays(content.cell_data, appender);
+    file << "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
+    appender.write_blocks();
+    file << "\n  </AppendedData>\n</VTKFile>\n";
+    file.commit();
+}
+
 }  // namespace
 
 void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const VtuContent& content) {
@@ -79,45 +128,20 @@ void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const Vtu
     check(path, content.point_data, mesh.nodes().size(), "nodes", set_names);
     check(path, content.cell_data, mesh.tetrahedra().size(), "elements", {"region"});
 
-    const std::size_t cells = mesh.tetrahedra().size();
-    std::vector<std::int64_t> ends(cells);
-    for (std::size_t c = 0; c < cells; ++c) ends[c] = 4 * static_cast<std::int64_t>(c + 1);
-    const std::vector<std::uint8_t> types(cells, 10);
     std::vector<std::vector<std::uint8_t>> sets;
+    OwnArrays own{.regions = mesh.regions()};
     for (const auto& [name, members] : mesh.node_sets()) {
         auto& set = sets.emplace_back(mesh.nodes().size(), std::uint8_t{0});
         for (const std::int32_t node : members) set[node] = 1;
+        own.of_points.emplace_back("set:" + name, set);
     }
-    const std::span<const double> coordinates(positions.empty() ? nullptr : positions.front().data(),
-                                              3 * positions.size());
-    const std::span<const std::int32_t> connectivity(cells == 0 ? nullptr : mesh.tetrahedra().front().data(),
-                                                     4 * cells);
+    write(path, {.points = positions, .tetrahedra = mesh.tetrahedra()}, content, own);
+}
 
-    AtomicFile file(path);
-    Appender appender(file);
-    file << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
-         << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
-         << "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"";
-    file.number(mesh.nodes().size()) << "\" NumberOfCells=\"";
-    file.number(cells) << "\">\n      <Points>\n";
-    appender.add("Float64", "Points", 3, coordinates);
-    file << "      </Points>\n      <Cells>\n";
-    appender.add("Int32", "connectivity", 1, connectivity);
-    appender.add("Int64", "offsets", 1, std::span<const std::int64_t>(ends));
-    appender.add("UInt8", "types", 1, std::span<const std::uint8_t>(types));
-    file << "      </Cells>\n      <PointData>\n";
-    add_arrays(content.point_data, appender);
-    auto set = sets.begin();
-    for (const std::string& name : set_names) {
-        appender.add("UInt8", name, 1, std::span<const std::uint8_t>(*set++));
-    }
-    file << "      </PointData>\n      <CellData>\n";
-    appender.add("Int32", "region", 1, mesh.regions());
-    add_arrays(content.cell_data, appender);
-    file << "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
-    appender.write_blocks();
-    file << "\n  </AppendedData>\n</VTKFile>\n";
-    file.commit();
+void write_vtu(const std::filesystem::path& path, const VtuGrid& grid, const VtuContent& content) {
+    check(path, content.point_data, grid.points.size(), "points", {});
+    check(path, content.cell_data, grid.tetrahedra.size() + grid.triangles.size(), "cells", {});
+    write(path, grid, content, {});
 }
 
 }  // namespace lancet::mesh

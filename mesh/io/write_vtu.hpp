@@ -32,4 +32,15 @@ struct VtuContent {
 /// @throws lancet::Error for arrays of the wrong size or with a name twice, and where the file cannot be written.
 void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const VtuContent& content = {});
 
+/// Points with tetrahedra and triangles, of any shape and not checked.
+struct VtuGrid {
+    std::span<const Point> points{};
+    std::span<const Tetrahedron> tetrahedra{};
+    std::span<const Triangle> triangles{};
+};
+
+/// The same for what is to be looked at rather than computed with, such as the parts of a cut mesh: cell data are those
+/// of the tetrahedra, then of the triangles; positions are the grid's.
+void write_vtu(const std::filesystem::path& path, const VtuGrid& grid, const VtuContent& content);
+
 }  // namespace lancet::mesh

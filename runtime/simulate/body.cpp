@@ -81,6 +81,10 @@ class BodyOf final : public DeformableBody {
     std::size_t nodes() const noexcept override { return numbering_.internal_of_user.size(); }
     std::size_t elements() const noexcept override { return element_count_; }
     double time() const noexcept override { return time_; }
+    void set_time(double time) override {
+        if (!std::isfinite(time)) throw Error("the time of a body is not finite");
+        time_ = time;
+    }
     void positions(std::span<Point> out) const override { gather_to_user(motion_.position, out); }
     void velocities(std::span<Point> out) const override { gather_to_user(motion_.velocity, out); }
 

@@ -83,6 +83,8 @@ class DeformableBody {
     virtual std::size_t nodes() const noexcept = 0;
     virtual std::size_t elements() const noexcept = 0;
     virtual double time() const noexcept = 0;
+    /// Sets the clock by which prescribed displacements go, in seconds.
+    virtual void set_time(double time) = 0;
     virtual void positions(std::span<Point> out) const = 0;
     virtual void velocities(std::span<Point> out) const = 0;
     /// Moves the body; rotations start anew from where they are. Fixed nodes keep their places.

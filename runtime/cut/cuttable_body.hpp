@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/runtime/simulate/body.hpp"
+
+namespace lancet::runtime {
+
+/// In which configuration a cut surface is given.
+enum class Configuration {
+    rest,    ///< as the mesh was made
+    current  ///< where the body is now
+};
+
+/// What a cut changed, and what it took.
+struct CutUpdate {
+    mesh::CutReport mesh;
+    double seconds_update = 0;  ///< building the body anew around the new parts and copies
+};
+
+/// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated
+/// from are, with their velocities, so that positions and velocities are continuous and momentum is kept; what is
+/// apart goes its own way from the next step on. A cut that throws leaves the body as it was.
+class CuttableBody {
+  public:
+    /// Starts without a cut. Throws as make_body does.
+    CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler);
+
+    CutUpdate cut(Scheduler& scheduler, const mesh::CutSurface& surface,
+                  Configuration configuration = Configuration::current,
+                  mesh::FrontTreatment front = mesh::FrontTreatment::retract);
+    StepReport step(Scheduler& scheduler) { return body_->step(scheduler); }
+
+    /// Parts and copies as they are now; node n of the body is copy n, and part e < elements() of it element e.
+    const mesh::CutMesh& mesh() const noexcept { return mesh_; }
+    /// The body as it is now; the next cut replaces it. What is held or loaded through it is forgotten by then.
+    DeformableBody& body() noexcept { return *body_; }
+    const DeformableBody& body() const noexcept { return *body_; }
+
+    /// Leads all copies of a node of the mesh to a place, as DeformableBody::hold does, also those of cuts to come.
+    void hold(std::int32_t node, const Point& target);
+    void release(std::int32_t node);
+
+    /// A dead force on a point of the material.
+    struct PointLoad {
+        std::int32_t element = 0;
+        mesh::Barycentric place{};
+        Point force{};  ///< N
+    };
+    /// Replaces the loads on points, beside the scene's own. They stay with their points through cuts to come.
+    void set_point_loads(std::span<const PointLoad> loads);
+
+    /// Where a point of the material is now.
+    Point position(std::int32_t element, const mesh::Barycentric& place) const;
+
+  private:
+    void apply_loads();
+
+    Scene scene_;  ///< without cuts
+    Settings settings_;
+    mesh::CutMesh mesh_;
+    std::unique_ptr<DeformableBody> body_;
+    std::vector<Point> scene_loads_;  ///< the scene's own, of each copy
+    std::map<std::int32_t, Point> holds_;
+    std::vector<PointLoad> point_loads_;
+};
+
+}  // namespace lancet::runtime
