@@ -21,10 +21,11 @@
 ///
 ///     u^T K u = sum_p v_p u_p^T K_e u_p <= sum_p v_p omega_e^2 u_p^T M_e u_p <= max_e omega_e^2 u^T M u,
 ///
-/// which is the same bound as before the cut, however many parts there are and however thin they are. An element cut
-/// through, with no neighbours, has the eigenvalues of the whole one exactly. The other kinds weigh the corners a thin
-/// part does not reach with higher powers of its thickness than its stiffness: their critical step goes to zero with
-/// it.
+/// which is the bound by elements that holds before the cut, however many parts there are and however thin they are.
+/// (The largest eigenvalue itself lies below this bound where elements share nodes; parts that are cut free of their
+/// neighbours come up to it.) An element cut through, with no neighbours, has the eigenvalues of the whole one exactly.
+/// The other kinds weigh the corners that a thin part does not reach with higher powers of its thickness than its
+/// stiffness has: their critical step goes to zero with it.
 ///
 /// Row sums are for implicit integration and for loads: gravity on a part acts through its centre of mass.
 namespace lancet::runtime {
