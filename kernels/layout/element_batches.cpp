@@ -59,7 +59,7 @@ TetrahedronGeometry tetrahedron_geometry(std::span<const Point> positions, const
 template <class Real>
 std::size_t ElementBatches<Real>::bytes() const noexcept {
     return heap_bytes(block_batch_begin) + heap_bytes(nodes) + heap_bytes(targets) + heap_bytes(rest) +
-           heap_bytes(mass) + heap_bytes(slot_of_element) + scatter.bytes();
+           heap_bytes(mass) + heap_bytes(pair_mass) + heap_bytes(slot_of_element) + scatter.bytes();
 }
 
 template <class Real>
@@ -120,8 +120,24 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
     return batches;
 }
 
+template <class Real>
+void set_pair_masses(ElementBatches<Real>& batches, std::span<const std::array<double, 6>> of_element) {
+    const auto lanes = static_cast<std::size_t>(batches.width);
+    batches.pair_mass.assign(static_cast<std::size_t>(batches.slots()) * 6, Real(0));
+    for (std::size_t e = 0; e < of_element.size(); ++e) {
+        if (batches.slot_of_element[e] < 0) continue;  // a body without free nodes has no batches
+        const auto slot = static_cast<std::size_t>(batches.slot_of_element[e]);
+        for (std::size_t pair = 0; pair < 6; ++pair) {
+            batches.pair_mass[(slot / lanes * 6 + pair) * lanes + slot % lanes] =
+                static_cast<Real>(of_element[e][pair]);
+        }
+    }
+}
+
 template struct ElementBatches<float>;
 template struct ElementBatches<double>;
+template void set_pair_masses<float>(ElementBatches<float>&, std::span<const std::array<double, 6>>);
+template void set_pair_masses<double>(ElementBatches<double>&, std::span<const std::array<double, 6>>);
 template ElementBatches<float> make_element_batches<float>(std::span<const Point>, std::span<const Tetrahedron>,
                                                            std::span<const std::int32_t>,
                                                            std::span<const ElasticParameters>, const NodeNumbering&,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,7 +33,9 @@ struct ElementBatches {
     AlignedVector<std::int32_t> targets;          ///< [batch][corner][lane] 4 * target in the buffer of `scatter`
     AlignedVector<Real> rest;                     ///< [batch][entry][lane]
     AlignedVector<Real> mass;                     ///< [batch][lane] rho v V, zero in padding
-    std::vector<std::int32_t> slot_of_element;    ///< batch * width + lane of each element of the mesh
+    AlignedVector<Real> pair_mass;  ///< [batch][pair of corners][lane] int rho phi_i phi_j, for a consistent mass; or
+                                    ///< empty
+    std::vector<std::int32_t> slot_of_element;  ///< batch * width + lane of each element of the mesh
     ScatterPlan scatter;
 
     int batches() const noexcept { return block_batch_begin.empty() ? 0 : block_batch_begin.back(); }
@@ -49,6 +52,18 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                                           std::span<const std::int32_t> regions,
                                           std::span<const ElasticParameters> parameters, const NodeNumbering& numbering,
                                           ScatterStrategy strategy, int width, std::span<const double> fractions = {});
+
+/// The pairs of corners of a tetrahedron, in the order in which their numbers are kept.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> corner_pairs{
+    {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+/// The place of a pair of different corners in corner_pairs.
+constexpr std::size_t pair_of_corners(std::size_t i, std::size_t j) noexcept {
+    return (i < j ? i : j) == 0 ? i + j - 1 : i + j;
+}
+
+/// Lays out the masses int rho phi_i phi_j of the pairs of corners of each element, kilograms.
+template <class Real>
+void set_pair_masses(ElementBatches<Real>& batches, std::span<const std::array<double, 6>> of_element);
 
 /// Gradients of the four shape functions and the volume of a linear tetrahedron.
 struct TetrahedronGeometry {

@@ -17,10 +17,10 @@ template <class Real>
 struct ElementDiagonalArguments {
     const std::int32_t* block_batch_begin;
     const std::int32_t* targets;
-    const Real* rest;          ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
-    const Real* rotated;       ///< rotated gradients or element blocks, in the layout below
-    const Real* element_mass;  ///< [batch][lane] for a consistent mass; nullptr for a lumped one, which is nodal
-    Real* buffer;              ///< xyz_ buffer of the elements' scatter plan, added to
+    const Real* rest;       ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
+    const Real* rotated;    ///< rotated gradients or element blocks, in the layout below
+    const Real* pair_mass;  ///< as ElementBatches::pair_mass; nullptr for a lumped mass, which is nodal
+    Real* buffer;           ///< xyz_ buffer of the elements' scatter plan, added to
     Real stiffness_factor;
     Real mass_factor;
     GradientLayout layout;

@@ -6,10 +6,10 @@
 
 namespace lancet::kernels {
 
-/// The part that is asked for of K_ii of the four corners of a batch, times a factor, with a mass on the axes.
+/// The part that is asked for of K_ii of the four corners of a batch, times a factor, with their masses on the axes.
 template <class P>
 LANCET_INLINE void diagonal_shares(const ElementDiagonalArguments<typename P::Real>& a, std::int64_t batch, P factor,
-                                   P mass, Vector3<P> (&share)[4]) {
+                                   const P (&mass)[4], Vector3<P> (&share)[4]) {
     using Real = typename P::Real;
     constexpr int W = P::width;
     if (a.layout == GradientLayout::element_blocks) {
@@ -18,7 +18,8 @@ LANCET_INLINE void diagonal_shares(const ElementDiagonalArguments<typename P::Re
         for (int corner = 0; corner < 4; ++corner) {
             const Symmetric3<P>& k = diagonal[corner];
             if (a.part == DiagonalPart::axial) {
-                share[corner] = {fma(factor, k.xx, mass), fma(factor, k.yy, mass), fma(factor, k.zz, mass)};
+                share[corner] = {fma(factor, k.xx, mass[corner]), fma(factor, k.yy, mass[corner]),
+                                 fma(factor, k.zz, mass[corner])};
             } else {
                 share[corner] = {factor * k.xy, factor * k.xz, factor * k.yz};
             }
@@ -33,7 +34,7 @@ LANCET_INLINE void diagonal_shares(const ElementDiagonalArguments<typename P::Re
     for (int corner = 0; corner < 4; ++corner) {
         const Vector3<P>& g = all[corner];
         if (a.part == DiagonalPart::axial) {
-            const P common = fma(factor, fma(g.z, g.z, fma(g.y, g.y, g.x * g.x)), mass);
+            const P common = fma(factor, fma(g.z, g.z, fma(g.y, g.y, g.x * g.x)), mass[corner]);
             share[corner] = {fma(dyad * g.x, g.x, common), fma(dyad * g.y, g.y, common), fma(dyad * g.z, g.z, common)};
         } else {
             share[corner] = {dyad * g.x * g.y, dyad * g.x * g.z, dyad * g.y * g.z};
@@ -47,10 +48,14 @@ void scatter_diagonal(const ElementDiagonalArguments<typename P::Real>& a, int b
     constexpr int W = P::width;
     const P factor(a.stiffness_factor);
     for (std::int64_t batch = a.block_batch_begin[block]; batch < a.block_batch_begin[block + 1]; ++batch) {
-        // int rho phi_i^2 = rho V / 10 is the nodal share rho V / 4 less 3/20.
-        const P mass = a.element_mass == nullptr
-                           ? P(Real(0))
-                           : P(Real(-3.0 / 20) * a.mass_factor) * P::load(a.element_mass + batch * W);
+        // int rho phi_i^2 is the row sum, which is nodal, less the masses of the corner's pairs.
+        P mass[4] = {P(Real(0)), P(Real(0)), P(Real(0)), P(Real(0))};
+        if (a.pair_mass != nullptr) {
+            for (std::size_t pair = 0; pair < 6; ++pair) {
+                const P m = P(a.mass_factor) * P::load(a.pair_mass + (batch * 6 + static_cast<std::int64_t>(pair)) * W);
+                for (const std::size_t corner : corner_pairs[pair]) mass[corner] = mass[corner] - m;
+            }
+        }
         Vector3<P> share[4];
         diagonal_shares(a, batch, factor, mass, share);
         for (int corner = 0; corner < 4; ++corner) {

@@ -38,10 +38,9 @@ struct MatrixFreeArguments {
     const std::int32_t* block_batch_begin;
     const std::int32_t* nodes;
     const std::int32_t* targets;
-    const Real* rest;     ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
-    const Real* rotated;  ///< rotated gradients or element blocks, in the layout below
-    const Real*
-        element_mass;  ///< [batch][lane] rho V / 20 times the mass factor for a consistent mass; nullptr: lumped
+    const Real* rest;       ///< as ElementBatches::rest: lambda / mu is read; not read for element blocks
+    const Real* rotated;    ///< rotated gradients or element blocks, in the layout below
+    const Real* pair_mass;  ///< as ElementBatches::pair_mass, times the mass factor; nullptr: a lumped mass
     Real stiffness_factor;
     GradientLayout layout = GradientLayout::batches;  ///< batches or element_blocks
 };

@@ -91,16 +91,26 @@ LANCET_INLINE void matrix_free_loop(const ProductArguments<typename P::Real>& pr
         for (int j = 0; j < 3; ++j) d.of[j] = load_nodes<P>(product.z, nodes + (j + 1) * W) - origin;
         Corners<P> f = multiply_elements<P, layout>(matrix, batch, factor, d, quadratic);
         if constexpr (ConsistentMass) {
-            // The consistent mass is its row sum on the diagonal, which open_block adds, and m (z_j - z_i) for each
-            // pair of corners: on corner i, m (sum_j d_j - 4 d_i).
-            const P mass = P::load(matrix.element_mass + batch * W);
-            const Vector3<P> total = d.sum();
+            // The consistent mass is its row sum on the diagonal, which open_block adds, and m_ij (z_j - z_i) for each
+            // pair of corners. Of the pairs with corner 0, whose d is zero, the other corner is -m_0i d_i.
+            const Real* masses = matrix.pair_mass + batch * 6 * W;
+            Vector3<P> pull[3];
             for (int i = 0; i < 3; ++i) {
-                const Vector3<P> pull{mass * fnma(P(Real(4)), d.of[i].x, total.x),
-                                      mass * fnma(P(Real(4)), d.of[i].y, total.y),
-                                      mass * fnma(P(Real(4)), d.of[i].z, total.z)};
-                f.of[i] = {f.of[i].x + pull.x, f.of[i].y + pull.y, f.of[i].z + pull.z};
-                quadratic += dot(pull, d.of[i]);
+                const P mass = P::load(masses + i * W);
+                pull[i] = {-(mass * d.of[i].x), -(mass * d.of[i].y), -(mass * d.of[i].z)};
+            }
+            for (int i = 0, pair = 3; i < 3; ++i) {
+                for (int j = i + 1; j < 3; ++j, ++pair) {
+                    const P mass = P::load(masses + pair * W);
+                    const Vector3<P> apart = d.of[j] - d.of[i];
+                    const Vector3<P> towards{mass * apart.x, mass * apart.y, mass * apart.z};
+                    pull[i] = {pull[i].x + towards.x, pull[i].y + towards.y, pull[i].z + towards.z};
+                    pull[j] = {pull[j].x - towards.x, pull[j].y - towards.y, pull[j].z - towards.z};
+                }
+            }
+            for (int i = 0; i < 3; ++i) {
+                f.of[i] = {f.of[i].x + pull[i].x, f.of[i].y + pull[i].y, f.of[i].z + pull[i].z};
+                quadratic += dot(pull[i], d.of[i]);
             }
         }
         scatter(product.y, matrix.targets + batch * 4 * W, f, product.exclusive_slots);
@@ -111,7 +121,7 @@ LANCET_INLINE void matrix_free_loop(const ProductArguments<typename P::Real>& pr
 template <class P, GradientLayout layout>
 void matrix_free_with(const ProductArguments<typename P::Real>& product,
                       const MatrixFreeArguments<typename P::Real>& matrix, int block) {
-    if (matrix.element_mass != nullptr) {
+    if (matrix.pair_mass != nullptr) {
         matrix_free_loop<P, layout, true>(product, matrix, block);
     } else {
         matrix_free_loop<P, layout, false>(product, matrix, block);

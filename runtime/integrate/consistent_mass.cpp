@@ -12,13 +12,15 @@ ConsistentMass::ConsistentMass(const kernels::ElementBatches<Real>& batches,
     std::vector<std::map<std::int32_t, double>> rows(static_cast<std::size_t>(numbering.free_count));
     for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
         if (batches.slot_of_element[e] < 0) continue;  // a body without free nodes has no batches
-        const double mass = static_cast<double>(batches.mass[batches.slot_of_element[e]]) / 20;
-        for (const std::int32_t i : tetrahedra[e]) {
-            const std::int32_t row = numbering.internal_of_user[i];
-            if (!numbering.is_free(row)) continue;
-            for (const std::int32_t j : tetrahedra[e]) {
-                if (i != j) rows[row][numbering.internal_of_user[j]] += mass;
-            }
+        const auto slot = static_cast<std::size_t>(batches.slot_of_element[e]),
+                   width = static_cast<std::size_t>(batches.width);
+        for (std::size_t pair = 0; pair < 6; ++pair) {
+            const auto mass = static_cast<double>(batches.pair_mass[(slot / width * 6 + pair) * width + slot % width]);
+            const auto& [i, j] = kernels::corner_pairs[pair];
+            const std::int32_t a = numbering.internal_of_user[tetrahedra[e][i]],
+                               b = numbering.internal_of_user[tetrahedra[e][j]];
+            if (numbering.is_free(a)) rows[a][b] += mass;
+            if (numbering.is_free(b)) rows[b][a] += mass;
         }
     }
     begin_.push_back(0);

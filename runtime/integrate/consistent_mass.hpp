@@ -11,12 +11,12 @@
 namespace lancet::runtime {
 
 /// What a consistent mass has beside its row sums: (M v)_i = m_i v_i + sum_j m_ij (v_j - v_i), with m_i the row sum and
-/// m_ij = rho V / 20 summed over the elements that hold both nodes. In double, gathered row by row: for the inertia of
-/// a step; the matrix of the linear system has it in its operator. An empty one stands for a lumped mass.
+/// m_ij = int rho phi_i phi_j over the elements that hold both nodes. In double, gathered row by row: for the inertia
+/// of a step; the matrix of the linear system has it in its operator. An empty one stands for a lumped mass.
 class ConsistentMass {
   public:
     ConsistentMass() = default;
-    /// - batches: with the mass of each element; tetrahedra: of the mesh, in the user's numbering
+    /// - batches: with their pair masses; tetrahedra: of the mesh, in the user's numbering
     template <class Real>
     ConsistentMass(const kernels::ElementBatches<Real>& batches, std::span<const kernels::Tetrahedron> tetrahedra,
                    const kernels::NodeNumbering& numbering);

@@ -258,14 +258,9 @@ class BodyOf final : public DeformableBody {
     static ElasticElements<Real> make_elements(const Scene& scene, const Settings& settings,
                                                const kernels::NodeNumbering& numbering) {
         const kernels::KernelSet<Real>& kernels = kernels::kernel_set<Real>(settings.instruction_set);
-        const ElementMaterials materials = element_materials(scene);
         const ElasticLaw law{.model = settings.model, .tangent = settings.tangent};
         return ElasticElements<Real>(
-            kernels,
-            kernels::make_element_batches<Real>(scene.mesh.nodes(), scene.mesh.tetrahedra(), materials.of_element,
-                                                materials.parameters, numbering, settings.scatter, kernels.width,
-                                                materials.fractions),
-            numbering,
+            kernels, element_batches<Real>(scene, numbering, settings.scatter, kernels.width, settings.mass), numbering,
             // No operator: nothing reads the gradients but products for the critical step, which are matrix-free.
             is_explicit(settings.integrator) && law.is_rotated() ? kernels::GradientLayout::batches
                                                                  : gradient_layout(settings.matrix, law),
@@ -427,9 +422,6 @@ class BodyOf final : public DeformableBody {
 std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler) {
     validate(settings);
     if (scene.mesh.tetrahedra().empty()) throw Error("scene: the mesh has no elements");
-    if (!scene.parts.empty() && settings.mass == MassKind::consistent) {
-        throw Error("scene: a consistent mass of cut elements is not available; expected lumped or fraction");
-    }
     for (const double value :
          {scene.gravity[0], scene.gravity[1], scene.gravity[2], scene.rayleigh_mass, scene.rayleigh_stiffness}) {
         if (!std::isfinite(value)) throw Error("scene: gravity and damping must be finite");

@@ -233,13 +233,9 @@ class Search {
     template <class Scalar>
     ElasticElements<Scalar> make_elements() const {
         const kernels::KernelSet<Scalar>& kernels = kernels::kernel_set<Scalar>(settings_.instruction_set);
-        const ElementMaterials materials = element_materials(scene());
-        return ElasticElements<Scalar>(
-            kernels,
-            kernels::make_element_batches<Scalar>(scene().mesh.nodes(), scene().mesh.tetrahedra(), materials.of_element,
-                                                  materials.parameters, numbering_, settings_.scatter, kernels.width,
-                                                  materials.fractions),
-            numbering_, gradient_layout(settings_.matrix, law()), settings_.rotation, law());
+        return ElasticElements<Scalar>(kernels,
+                                       element_batches<Scalar>(scene(), numbering_, settings_.scatter, kernels.width),
+                                       numbering_, gradient_layout(settings_.matrix, law()), settings_.rotation, law());
     }
 
     ElasticElements<Inner>& inner_elements() {

@@ -72,4 +72,32 @@ std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& mat
     return mass;
 }
 
+template <class Real>
+kernels::ElementBatches<Real> element_batches(const Scene& scene, const kernels::NodeNumbering& numbering,
+                                              kernels::ScatterStrategy scatter, int width, MassKind mass) {
+    const ElementMaterials materials = element_materials(scene);
+    const std::span<const mesh::Tetrahedron> tetrahedra = scene.mesh.tetrahedra();
+    auto batches =
+        kernels::make_element_batches<Real>(scene.mesh.nodes(), tetrahedra, materials.of_element, materials.parameters,
+                                            numbering, scatter, width, materials.fractions);
+    if (mass != MassKind::consistent) return batches;
+    std::vector<std::array<double, 6>> pairs(tetrahedra.size());
+    for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+        const double whole = materials.parameters[materials.of_element[e]].density *
+                             kernels::tetrahedron_geometry(scene.mesh.nodes(), tetrahedra[e]).volume;
+        const auto share = corner_mass_matrix(mass, scene.parts.of(e));
+        for (std::size_t pair = 0; pair < 6; ++pair) {
+            const auto& [i, j] = kernels::corner_pairs[pair];
+            pairs[e][pair] = whole * share[i][j];
+        }
+    }
+    kernels::set_pair_masses(batches, std::span<const std::array<double, 6>>(pairs));
+    return batches;
+}
+
+template kernels::ElementBatches<float> element_batches<float>(const Scene&, const kernels::NodeNumbering&,
+                                                               kernels::ScatterStrategy, int, MassKind);
+template kernels::ElementBatches<double> element_batches<double>(const Scene&, const kernels::NodeNumbering&,
+                                                                 kernels::ScatterStrategy, int, MassKind);
+
 }  // namespace lancet::runtime

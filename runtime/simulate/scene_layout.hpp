@@ -32,4 +32,10 @@ ElementMaterials element_materials(const Scene& scene);
 std::vector<double> nodal_masses(const Scene& scene, const ElementMaterials& materials,
                                  const kernels::NodeNumbering& numbering, MassKind kind = MassKind::lumped);
 
+/// The elements of a scene laid out for a kernel's width; with the masses of pairs where the mass is consistent.
+template <class Real>
+kernels::ElementBatches<Real> element_batches(const Scene& scene, const kernels::NodeNumbering& numbering,
+                                              kernels::ScatterStrategy scatter, int width,
+                                              MassKind mass = MassKind::lumped);
+
 }  // namespace lancet::runtime

@@ -143,7 +143,7 @@ void ElasticElements<Real>::invert_diagonal(Scheduler& scheduler, const Diagonal
         .targets = batches_.targets.data(),
         .rest = batches_.rest.data(),
         .rotated = rotated_.data(),
-        .element_mass = wanted.has_consistent_mass ? batches_.mass.data() : nullptr,
+        .pair_mass = wanted.has_consistent_mass ? batches_.pair_mass.data() : nullptr,
         .buffer = force_.data(),
         .stiffness_factor = static_cast<Real>(wanted.stiffness_factor),
         .mass_factor = static_cast<Real>(wanted.mass_factor),

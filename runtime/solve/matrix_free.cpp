@@ -6,39 +6,38 @@ template <class Real>
 MatrixFree<Real>::MatrixFree(ElasticElements<Real>& elements, const OperatorDefinition& definition)
     : Operator<Real>(elements, definition.nodal_mass),
       mass_(definition.mass),
-      element_mass_(mass_ == MassKind::consistent ? elements.batches().mass.size() : 0) {
+      pair_mass_(mass_ == MassKind::consistent ? elements.batches().pair_mass.size() : 0) {
     this->set_plan(elements.batches().scatter);
 }
 
 template <class Real>
 void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors) {
     this->set_factors(factors);
-    if (mass_ != MassKind::consistent || element_mass_factor_ == factors.mass) return;
-    element_mass_factor_ = factors.mass;
-    for (std::size_t lane = 0; lane < element_mass_.size(); ++lane) {
-        element_mass_[lane] =
-            static_cast<Real>(factors.mass * static_cast<double>(this->elements().batches().mass[lane]) / 20);
+    if (mass_ != MassKind::consistent || pair_mass_factor_ == factors.mass) return;
+    pair_mass_factor_ = factors.mass;
+    for (std::size_t lane = 0; lane < pair_mass_.size(); ++lane) {
+        pair_mass_[lane] =
+            static_cast<Real>(factors.mass * static_cast<double>(this->elements().batches().pair_mass[lane]));
     }
 }
 
 template <class Real>
 void MatrixFree<Real>::add_product(const kernels::ProductArguments<Real>& product, int block) const {
     const kernels::ElementBatches<Real>& batches = this->elements().batches();
-    const kernels::MatrixFreeArguments<Real> matrix{
-        .block_batch_begin = batches.block_batch_begin.data(),
-        .nodes = batches.nodes.data(),
-        .targets = batches.targets.data(),
-        .rest = batches.rest.data(),
-        .rotated = this->elements().rotated(),
-        .element_mass = element_mass_.empty() ? nullptr : element_mass_.data(),
-        .stiffness_factor = static_cast<Real>(this->factors().stiffness),
-        .layout = this->elements().layout()};
+    const kernels::MatrixFreeArguments<Real> matrix{.block_batch_begin = batches.block_batch_begin.data(),
+                                                    .nodes = batches.nodes.data(),
+                                                    .targets = batches.targets.data(),
+                                                    .rest = batches.rest.data(),
+                                                    .rotated = this->elements().rotated(),
+                                                    .pair_mass = pair_mass_.empty() ? nullptr : pair_mass_.data(),
+                                                    .stiffness_factor = static_cast<Real>(this->factors().stiffness),
+                                                    .layout = this->elements().layout()};
     this->kernels().matrix.matrix_free(product, matrix, block);
 }
 
 template <class Real>
 std::size_t MatrixFree<Real>::bytes() const noexcept {
-    return Operator<Real>::bytes() + kernels::heap_bytes(element_mass_);
+    return Operator<Real>::bytes() + kernels::heap_bytes(pair_mass_);
 }
 
 template <class Real>

@@ -22,8 +22,8 @@ class MatrixFree final : public Operator<Real> {
     void add_product(const kernels::ProductArguments<Real>& product, int block) const override;
 
     MassKind mass_;
-    double element_mass_factor_ = 0;
-    kernels::AlignedVector<Real> element_mass_;  ///< [batch][lane], for a consistent mass
+    double pair_mass_factor_ = 0;
+    kernels::AlignedVector<Real> pair_mass_;  ///< as ElementBatches::pair_mass, times the factor
 };
 
 }  // namespace lancet::runtime

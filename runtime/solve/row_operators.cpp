@@ -30,8 +30,17 @@ void BlockMatrix<Real>::set_entry_mass(double mass_factor) {
                 const std::int32_t* corners = &pattern_.incidence[static_cast<std::size_t>(k) * 2 * width];
                 const std::int32_t row = corners[lane], column = corners[width + lane];
                 if (row == nothing) continue;
-                // int rho phi_i phi_j is rho V / 10 for i = j and rho V / 20 else; the row sum rho V / 4 is nodal.
-                mass += static_cast<double>(elements_->batches().mass[row >> 4]) * (row == column ? -3.0 : 1.0) / 20;
+                // On the diagonal the row sum is nodal: what is left is minus the masses of the corner's pairs.
+                const std::size_t slot = row >> 4, i = (row >> 2) & 3, j = (column >> 2) & 3;
+                const Real* pairs = &elements_->batches().pair_mass[slot / width * 6 * width + slot % width];
+                const auto pair = [&](std::size_t a, std::size_t b) {
+                    return static_cast<double>(pairs[kernels::pair_of_corners(a, b) * width]);
+                };
+                if (i != j) {
+                    mass += pair(i, j);
+                } else {
+                    for (std::size_t other = 0; other < 4; ++other) mass -= other == i ? 0 : pair(i, other);
+                }
             }
             entry_mass_[entry * width + lane] = static_cast<Real>(mass_factor * mass);
         }

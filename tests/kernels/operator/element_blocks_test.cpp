@@ -63,6 +63,15 @@ class ElementBlocks : public ElementTest {
 };
 INSTANTIATE_TEST_SUITE_P(Arithmetics, ElementBlocks, ::testing::ValuesIn(element_arithmetics()), arithmetic_name);
 
+/// The consistent mass of whole elements, times a factor: int rho phi_i phi_j = rho V / 20 for each pair of corners.
+template <class Real>
+void set_whole_pair_masses(const ReferenceSolid& solid, HyperelasticElements<Real>& elements, double factor) {
+    std::vector<std::array<double, 6>> pairs(solid.tetrahedra.size());
+    for (std::size_t e = 0; e < pairs.size(); ++e)
+        pairs[e].fill(factor * solid.material(e).density * solid.volume(e) / 20);
+    kernels::set_pair_masses(elements.batches, std::span<const std::array<double, 6>>(pairs));
+}
+
 double sum_of(const std::vector<double>& parts) {
     double sum = 0;
     for (const double part : parts) sum += part;
@@ -94,12 +103,11 @@ TEST_P(ElementBlocks, MatrixFreeProductEqualsTheDenseOne) {
     const Eigen::VectorXd z = some_z();
     for (const ScatterStrategy strategy : scatter_strategies) {
         with_elements(solid, strategy, [&]<class Real>(HyperelasticElements<Real>& elements) {
+            set_whole_pair_masses(solid, elements, mass_factor);
             elements.set_positions(x);
             for_each_tangent([&](MaterialModel model, TangentKind kind) {
                 elements.compute_element_blocks(model, kind);
                 for (const bool consistent : {false, true}) {
-                    AlignedVector<Real> mass = elements.batches.mass;
-                    for (Real& m : mass) m = static_cast<Real>(mass_factor / 20) * m;
                     Eigen::MatrixXd a = stiffness(model, kind);
                     // The kernel adds the consistent mass less its row sums, which are nodal.
                     if (consistent) a += on_free(mass_factor * (solid.mass(true) - solid.mass(false)));
@@ -109,7 +117,7 @@ TEST_P(ElementBlocks, MatrixFreeProductEqualsTheDenseOne) {
                         .targets = elements.batches.targets.data(),
                         .rest = nullptr,
                         .rotated = elements.element_blocks.data(),
-                        .element_mass = consistent ? mass.data() : nullptr,
+                        .pair_mass = consistent ? elements.batches.pair_mass.data() : nullptr,
                         .stiffness_factor = static_cast<Real>(stiffness_factor),
                         .layout = GradientLayout::element_blocks};
                     const Product<Real> product(solid, elements, elements.batches.scatter, elements.exclusive_slots(),
@@ -183,6 +191,7 @@ TEST_P(ElementBlocks, AssembledRowsEqualTheDenseMatrix) {
 TEST_P(ElementBlocks, DiagonalEqualsThatOfTheDenseMatrix) {
     for (const ScatterStrategy strategy : scatter_strategies) {
         with_elements(solid, strategy, [&]<class Real>(HyperelasticElements<Real>& elements) {
+            set_whole_pair_masses(solid, elements, 1);
             elements.set_positions(x);
             const auto width = static_cast<std::size_t>(elements.kernels.width);
             const auto nodes = static_cast<std::size_t>(elements.numbering.node_count);
@@ -200,7 +209,7 @@ TEST_P(ElementBlocks, DiagonalEqualsThatOfTheDenseMatrix) {
                     .targets = elements.batches.targets.data(),
                     .rest = nullptr,
                     .rotated = elements.element_blocks.data(),
-                    .element_mass = elements.batches.mass.data(),
+                    .pair_mass = elements.batches.pair_mass.data(),
                     .buffer = elements.buffer.data(),
                     .stiffness_factor = static_cast<Real>(stiffness_factor),
                     .mass_factor = static_cast<Real>(mass_factor),
