@@ -23,7 +23,7 @@ struct Cell {
 Cell whole_tetrahedron(PlanePool& pool);
 
 /// The pieces of a cell on the negative and on the positive side of a plane; nothing where the plane does not go
-/// through its inside.
+/// through its inside. The last face of each is that in the plane.
 std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, int plane);
 
 /// True where the plane goes through the inside of the cell.

@@ -137,6 +137,58 @@ PartMoments ElementCells::moments(int part) const {
     return moments;
 }
 
+std::vector<ElementCells::Section> ElementCells::sections() const {
+    PlanePool pool = pool_;  // clipping adds points
+    std::vector<Section> sections;
+    for (std::size_t a = 0; a < cells_.size(); ++a) {
+        for (std::size_t f = 0; f < cells_[a].faces.size(); ++f) {
+            const HalfSpace& half = cells_[a].faces[f].half;
+            if (!is_cut(half.plane) || half.side < 0) continue;
+            for (std::size_t b = 0; b < cells_.size(); ++b) {
+                for (std::size_t g = 0; g < cells_[b].faces.size(); ++g) {
+                    const HalfSpace& other = cells_[b].faces[g].half;
+                    if (other.plane != half.plane || other.side > 0) continue;
+                    Polygon shared = polygon(cells_[a], f);
+                    for (const HalfSpace& edge : polygon(cells_[b], g).edges) {
+                        shared = clip(pool, shared, edge);
+                        if (shared.points.empty()) break;
+                    }
+                    if (shared.points.empty()) continue;
+                    Section section{.plane = half.plane, .above = part_of_cell_[a], .below = part_of_cell_[b]};
+                    for (const int point : shared.points) section.corners.push_back(pool.coordinates(point));
+                    sections.push_back(std::move(section));
+                }
+            }
+        }
+    }
+    return sections;
+}
+
+int ElementCells::add_guide(const std::array<double, 4>& values) {
+    plane_is_cut_.push_back(false);
+    return pool_.add_values(values);
+}
+
+ElementCells::Halves ElementCells::halves(int part, int plane) const {
+    PlanePool pool = pool_;
+    Halves halves{.below = empty_moments(), .above = empty_moments()};
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (part_of_cell_[c] != part) continue;
+        if (const auto pieces = split(pool, cells_[c], plane)) {
+            add_cell(halves.below, pool, pieces->first);
+            add_cell(halves.above, pool, pieces->second);
+            std::vector<Barycentric>& polygon = halves.section.emplace_back();
+            for (const int point : pieces->second.faces.back().points) polygon.push_back(pool.coordinates(point));
+            continue;
+        }
+        const bool is_above = std::ranges::any_of(cells_[c].faces, [&](const Cell::Face& face) {
+            return std::ranges::any_of(face.points, [&](int point) { return pool.side(plane, point) > 0; });
+        });
+        add_cell(is_above ? halves.above : halves.below, pool, cells_[c]);
+    }
+    return halves;
+}
+
 bool ElementCells::touches(int part, int corner) const {
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (part_of_cell_[c] != part) continue;

@@ -34,6 +34,24 @@ class ElementCells {
     std::span<const Cover> covers() const noexcept { return covers_; }
     /// True where the plane is a facet's, which separates what lies on its two sides.
     bool is_cut(int plane) const { return plane_is_cut_[static_cast<std::size_t>(plane)]; }
+    /// A piece of a facet in the element, and the parts on both of its sides, which may be one.
+    struct Section {
+        int plane = 0;
+        int above = 0, below = 0;
+        std::vector<Barycentric> corners{};
+    };
+    std::vector<Section> sections() const;
+
+    /// Adds a plane by its values at the corners, for `halves`. Returns its number.
+    int add_guide(const std::array<double, 4>& values);
+    /// What a part has on either side of a plane of the pool, and the polygons between, in which the plane divides
+    /// cells.
+    struct Halves {
+        PartMoments below{}, above{};
+        std::vector<std::vector<Barycentric>> section{};
+    };
+    Halves halves(int part, int plane) const;
+
     /// The part in whose inside, or else on whose border, a place lies.
     int part_at(const Barycentric& place) const;
     /// True where the part holds the corner, on its border or inside.

@@ -38,6 +38,14 @@ PartMoments empty_moments() {
     return {.fraction = 0, .first = {}, .second = {}};
 }
 
+void add_weighted(PartMoments& moments, const PartMoments& other, double weight) {
+    moments.fraction += weight * other.fraction;
+    for (std::size_t i = 0; i < 4; ++i) {
+        moments.first[i] += weight * other.first[i];
+        for (std::size_t j = 0; j < 4; ++j) moments.second[i][j] += weight * other.second[i][j];
+    }
+}
+
 void add_tetrahedron(PartMoments& moments, const std::array<Barycentric, 4>& corners) {
     const double fraction = volume_fraction(corners);
     // Over a tetrahedron of volume v, a linear function f with values f_k at the corners has int f = v/4 sum_k f_k, and

@@ -23,6 +23,9 @@ using Barycentric = std::array<double, 4>;
 /// The moments of nothing, to add to.
 PartMoments empty_moments();
 
+/// Adds a multiple of other moments.
+void add_weighted(PartMoments& moments, const PartMoments& other, double weight);
+
 /// Adds the tetrahedron spanned by four points; either orientation adds its volume.
 ///
 /// The relative error is a few roundings where small coordinates carry the thickness, as in slivers next to a corner,

@@ -24,6 +24,18 @@ int PlanePool::add_plane(const Plane& source, const std::array<Point, 4>& corner
     return planes() - 1;
 }
 
+int PlanePool::add_values(const std::array<double, 4>& values) {
+    StoredPlane stored;
+    for (std::size_t k = 0; k < 4; ++k) stored.values[k] = {values[k], 0};
+    planes_.push_back(stored);
+    return planes() - 1;
+}
+
+std::array<double, 4> PlanePool::values(int number) const {
+    const StoredPlane& stored = plane(number);
+    return {stored.values[0].value, stored.values[1].value, stored.values[2].value, stored.values[3].value};
+}
+
 int PlanePool::add_trace(const PlanePool& other, int plane, const std::array<int, 3>& face) {
     const StoredPlane& original = other.plane(plane);
     StoredPlane trace{.source = original.source};

@@ -21,6 +21,8 @@ class PlanePool {
 
     /// The plane of `source`, whose values are taken at `corners`; `source` must outlive the pool. Returns its number.
     int add_plane(const Plane& source, const std::array<Point, 4>& corners);
+    /// The plane of a function that has exactly these values at the corners. Returns its number.
+    int add_values(const std::array<double, 4>& values);
     /// The trace of a plane of another pool on the face with the corners `face` there: its values at these three become
     /// those at corners 0, 1, 2, and that at corner 3 is zero. Returns its number.
     int add_trace(const PlanePool& other, int plane, const std::array<int, 3>& face);
@@ -32,6 +34,8 @@ class PlanePool {
     int side(int plane, int point) const;
     /// -1, 0 or +1: the sign of the plane's value at a corner.
     int side_of_corner(int plane, int corner) const;
+    /// The values of a plane's function at the corners, rounded.
+    std::array<double, 4> values(int plane) const;
     /// The plane's function at a place, relative to its largest value at a corner; rounded.
     double value(int plane, const Barycentric& place) const;
     /// To nearly full relative precision, and exactly zero where they are.
@@ -39,7 +43,7 @@ class PlanePool {
 
   private:
     struct StoredPlane {
-        const Plane* source = nullptr;  ///< nothing for the faces of the tetrahedron
+        const Plane* source = nullptr;  ///< nothing where the values are exact
         std::array<Point, 4> corners{};
         std::array<bool, 4> is_kept{};  ///< false: the value at the corner is zero whatever the source says
         std::array<Bounded, 4> values{};

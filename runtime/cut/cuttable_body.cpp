@@ -1,5 +1,6 @@
 #include "lancet/runtime/cut/cuttable_body.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -10,49 +11,113 @@
 
 namespace lancet::runtime {
 
-CuttableBody::CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler)
+namespace {
+
+/// The motion of a body by its nodes.
+struct Motion {
+    std::vector<Point> positions, velocities;
+    std::vector<double> masses;
+
+    explicit Motion(const DeformableBody& body) : positions(body.nodes()), velocities(body.nodes()) {
+        body.positions(positions);
+        body.velocities(velocities);
+        for (std::size_t node = 0; node < body.nodes(); ++node) {
+            masses.push_back(body.nodal_mass(static_cast<std::int32_t>(node)));
+        }
+    }
+};
+
+/// The copy that was opening from each copy, if any: its number in the body.
+std::map<std::int32_t, std::size_t> far_copies(const mesh::CutMesh& mesh, std::span<const std::int32_t> opened_from) {
+    std::map<std::int32_t, std::size_t> far;
+    for (std::size_t k = 0; k < opened_from.size(); ++k) far[opened_from[k]] = mesh.node_of_copy().size() + k;
+    return far;
+}
+
+/// Sets a body going where another was before a cut; copies are numbered as in the meshes before and after.
+void take_over(const Motion& before, const mesh::CutMesh& mesh_before, std::span<const std::int32_t> opened_before,
+               const mesh::CutMesh& mesh, std::span<const std::int32_t> opened_from, DeformableBody& body) {
+    const auto far_before = far_copies(mesh_before, opened_before);
+    const std::size_t copies_before = mesh_before.node_of_copy().size(), copies = mesh.node_of_copy().size();
+    std::vector<Point> positions(body.nodes()), velocities(body.nodes());
+    // A parent has a lower number: its values are there before those of its copy are asked for.
+    for (std::size_t node = 0; node < body.nodes(); ++node) {
+        if (node < copies_before) {
+            positions[node] = before.positions[node];
+            velocities[node] = before.velocities[node];
+            continue;
+        }
+        const auto parent =
+            static_cast<std::size_t>(node < copies ? mesh.parent_of_copy()[node] : opened_from[node - copies]);
+        positions[node] = positions[parent];
+        velocities[node] = velocities[parent];
+        const auto far = far_before.find(static_cast<std::int32_t>(parent));
+        if (far == far_before.end()) continue;
+        // What has come over since brings the parent's velocity.
+        positions[node] = before.positions[far->second];
+        const double mass = body.nodal_mass(static_cast<std::int32_t>(node));
+        const double kept = mass > 0 ? std::min(1.0, before.masses[far->second] / mass) : 1.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            velocities[node][axis] =
+                kept * before.velocities[far->second][axis] + (1 - kept) * velocities[parent][axis];
+        }
+    }
+    body.set_positions(positions);
+    body.set_velocities(velocities);
+}
+
+}  // namespace
+
+CuttableBody::CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler, mesh::Fronts fronts)
     : scene_(std::move(scene)),
       settings_(settings),
+      fronts_(fronts),
       mesh_(scene_.mesh),
       body_(make_body(scene_, settings, scheduler)),
       scene_loads_(external_loads(scene_)) {}
 
 CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surface, Configuration configuration,
                             mesh::FrontTreatment front) {
-    std::vector<Point> positions(body_->nodes()), velocities(body_->nodes());
-    body_->positions(positions);
-    body_->velocities(velocities);
+    const Motion before(*body_);
     mesh::CutMesh mesh = mesh_;
     CutUpdate update;
-    update.mesh = mesh.cut(surface, front,
-                           configuration == Configuration::current ? std::span(positions) : std::span<const Point>());
-    if (update.mesh.new_parts == 0 && update.mesh.new_copies == 0) {
+    update.mesh =
+        mesh.cut(surface, front,
+                 configuration == Configuration::current ? std::span(before.positions).first(mesh.node_of_copy().size())
+                                                         : std::span<const Point>());
+    const bool moves_front = fronts_ == mesh::Fronts::blended && update.mesh.touched_elements > 0;
+    if (update.mesh.new_parts == 0 && update.mesh.new_copies == 0 && !moves_front) {
         mesh_ = std::move(mesh);
         return update;
     }
     const double start = steady_seconds();
-    // A parent has a lower number: its values are there before those of its copy are asked for.
-    for (std::size_t copy = positions.size(); copy < mesh.node_of_copy().size(); ++copy) {
-        const auto parent = static_cast<std::size_t>(mesh.parent_of_copy()[copy]);
-        positions.push_back(positions[parent]);
-        velocities.push_back(velocities[parent]);
-    }
-    const Scene scene = divided(scene_, mesh);
+    std::vector<std::int32_t> opened_from;
+    const Scene scene = divided(scene_, mesh, fronts_, &opened_from);
     std::vector<Point> loads = external_loads(scene);
     auto body = make_body(scene, settings_, scheduler);
     body->set_time(body_->time());
-    body->set_positions(positions);
-    body->set_velocities(velocities);
+    take_over(before, mesh_, opened_from_, mesh, opened_from, *body);
 
     mesh_ = std::move(mesh);
+    opened_from_ = std::move(opened_from);
     body_ = std::move(body);
     scene_loads_ = std::move(loads);
     apply_loads();
     for (const auto& [node, target] : holds_) {
-        for (const std::int32_t copy : mesh_.copies_of_node(node)) body_->hold(copy, target);
+        for (const std::int32_t copy : copies_of_node(node)) body_->hold(copy, target);
     }
     update.seconds_update = steady_seconds() - start;
     return update;
+}
+
+std::vector<std::int32_t> CuttableBody::copies_of_node(std::int32_t node) const {
+    std::vector<std::int32_t> copies = mesh_.copies_of_node(node);
+    for (std::size_t k = 0; k < opened_from_.size(); ++k) {
+        if (mesh_.node_of_copy()[static_cast<std::size_t>(opened_from_[k])] == node) {
+            copies.push_back(static_cast<std::int32_t>(mesh_.node_of_copy().size() + k));
+        }
+    }
+    return copies;
 }
 
 void CuttableBody::hold(std::int32_t node, const Point& target) {
@@ -60,13 +125,13 @@ void CuttableBody::hold(std::int32_t node, const Point& target) {
         throw Error("hold: node " + std::to_string(node) + " does not exist; the mesh has nodes 0 to " +
                     std::to_string(mesh_.mesh().nodes().size() - 1));
     }
-    for (const std::int32_t copy : mesh_.copies_of_node(node)) body_->hold(copy, target);
+    for (const std::int32_t copy : copies_of_node(node)) body_->hold(copy, target);
     holds_[node] = target;
 }
 
 void CuttableBody::release(std::int32_t node) {
     if (holds_.erase(node) == 0) return;
-    for (const std::int32_t copy : mesh_.copies_of_node(node)) body_->release(copy);
+    for (const std::int32_t copy : copies_of_node(node)) body_->release(copy);
 }
 
 void CuttableBody::set_point_loads(std::span<const PointLoad> loads) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/mesh/cut/lanes.hpp"
 #include "lancet/runtime/simulate/body.hpp"
 
 namespace lancet::runtime {
@@ -25,17 +26,22 @@ struct CutUpdate {
 /// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated
 /// from are, with their velocities, so that positions and velocities are continuous and momentum is kept; what is
 /// apart goes its own way from the next step on. A cut that throws leaves the body as it was.
+///
+/// With blended fronts (lanes.hpp) mass goes over from a copy to the one that opens from it as the front moves on; it
+/// takes its velocity along, which keeps linear momentum, and angular momentum but for the opening times that mass.
 class CuttableBody {
   public:
     /// Starts without a cut. Throws as make_body does.
-    CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler);
+    CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler,
+                 mesh::Fronts fronts = mesh::Fronts::sharp);
 
     CutUpdate cut(Scheduler& scheduler, const mesh::CutSurface& surface,
                   Configuration configuration = Configuration::current,
                   mesh::FrontTreatment front = mesh::FrontTreatment::retract);
     StepReport step(Scheduler& scheduler) { return body_->step(scheduler); }
 
-    /// Parts and copies as they are now; node n of the body is copy n, and part e < elements() of it element e.
+    /// Parts and copies as they are now. The nodes of the body are the copies, in their order, and then those that open
+    /// at blended fronts.
     const mesh::CutMesh& mesh() const noexcept { return mesh_; }
     /// The body as it is now; the next cut replaces it. What is held or loaded through it is forgotten by then.
     DeformableBody& body() noexcept { return *body_; }
@@ -59,10 +65,13 @@ class CuttableBody {
 
   private:
     void apply_loads();
+    std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
 
     Scene scene_;  ///< without cuts
     Settings settings_;
+    mesh::Fronts fronts_;
     mesh::CutMesh mesh_;
+    std::vector<std::int32_t> opened_from_;  ///< see mesh::Lanes
     std::unique_ptr<DeformableBody> body_;
     std::vector<Point> scene_loads_;  ///< the scene's own, of each copy
     std::map<std::int32_t, Point> holds_;

@@ -8,19 +8,12 @@
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/cut/boundary_shares.hpp"
+#include "lancet/mesh/cut/lanes.hpp"
 #include "lancet/runtime/simulate/loads.hpp"
 
 namespace lancet::runtime {
 
 namespace {
-
-void add(mesh::PartMoments& sum, const mesh::PartMoments& moments) {
-    sum.fraction += moments.fraction;
-    for (std::size_t i = 0; i < 4; ++i) {
-        sum.first[i] += moments.first[i];
-        for (std::size_t j = 0; j < 4; ++j) sum.second[i][j] += moments.second[i][j];
-    }
-}
 
 /// Parts thinner than this are taken as so thick: far below the rounding of every sum that they enter, and thick enough
 /// that a float holds their stiffness.
@@ -37,41 +30,20 @@ mesh::PartMoments not_too_thin(const mesh::PartMoments& moments) {
     return thicker;
 }
 
-/// The parts as elements, with their moments.
-void take_parts(const Scene& scene, const mesh::CutMesh& cut, Scene& divided, mesh::TetMesh::Definition& definition) {
-    // The first part of each element keeps its place; the others follow behind.
-    std::map<std::int32_t, std::vector<std::int32_t>> elements_of;  // cut element -> its elements in the definition
-    std::map<std::int32_t, mesh::PartMoments> moments_of;
-    for (std::size_t part = 0; part < cut.parts().size(); ++part) {
-        const std::int32_t element = cut.element_of_part()[part];
-        if (cut.cells(element) == nullptr) {
-            definition.tetrahedra.push_back(cut.parts()[part]);
-            definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(element)]);
-            continue;
+/// The lanes as elements, with their moments.
+void take_lanes(const Scene& scene, const mesh::Lanes& lanes, Scene& divided, mesh::TetMesh::Definition& definition) {
+    for (const mesh::Lanes::Lane& lane : lanes.lanes) {
+        const bool is_whole = lane.moments.fraction == 1;
+        if (!is_whole && divided.parts.empty()) divided.parts.place.assign(lanes.lanes.size(), -1);
+        if (!is_whole) {
+            divided.parts.place[definition.tetrahedra.size()] = static_cast<std::int32_t>(divided.parts.moments.size());
+            divided.parts.moments.push_back(not_too_thin(lane.moments));
         }
-        const mesh::PartMoments moments = cut.moments(static_cast<std::int32_t>(part));
-        std::vector<std::int32_t>& known = elements_of[element];
-        const auto same = std::ranges::find_if(known, [&](std::int32_t other) {
-            return definition.tetrahedra[static_cast<std::size_t>(other)] == cut.parts()[part];
-        });
-        if (same != known.end()) {
-            add(moments_of.at(*same), moments);
-            continue;
-        }
-        const auto place = static_cast<std::int32_t>(definition.tetrahedra.size());
-        known.push_back(place);
-        moments_of[place] = moments;
-        definition.tetrahedra.push_back(cut.parts()[part]);
-        definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(element)]);
+        definition.tetrahedra.push_back(lane.copies);
+        definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(lane.element)]);
     }
-    for (const auto& [element, places] : elements_of) {
-        if (places.size() == 1) moments_of.erase(places.front());  // it is whole
-    }
-    if (moments_of.empty()) return;
-    divided.parts.place.assign(definition.tetrahedra.size(), -1);
-    for (const auto& [place, moments] : moments_of) {
-        divided.parts.place[static_cast<std::size_t>(place)] = static_cast<std::int32_t>(divided.parts.moments.size());
-        divided.parts.moments.push_back(not_too_thin(moments));
+    for (const std::int32_t node : lanes.node_of_copy) {
+        definition.nodes.push_back(scene.mesh.nodes()[static_cast<std::size_t>(node)]);
     }
 }
 
@@ -125,7 +97,8 @@ bool spread(const mesh::CutMesh& cut, const std::array<std::int32_t, Count>& nod
 
 }  // namespace
 
-Scene divided(const Scene& scene, const mesh::CutMesh& cut) {
+Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts,
+              std::vector<std::int32_t>* opened_from) {
     if (!scene.parts.empty()) throw Error("cuts: the scene has been divided before; divide the one without cuts");
     if (scene.mesh.nodes().size() != cut.mesh().nodes().size() ||
         !std::ranges::equal(scene.mesh.tetrahedra(), cut.mesh().tetrahedra())) {
@@ -135,13 +108,24 @@ Scene divided(const Scene& scene, const mesh::CutMesh& cut) {
     (void)external_loads(scene);
     Scene result = scene;
     mesh::TetMesh::Definition definition;
-    definition.nodes = cut.rest_positions();
     definition.region_names = scene.mesh.region_names();
-    take_parts(scene, cut, result, definition);
+    const mesh::Lanes lanes = mesh::lanes(cut, fronts);
+    if (opened_from != nullptr) *opened_from = lanes.opened_from;
+    take_lanes(scene, lanes, result, definition);
+    std::map<std::int32_t, std::vector<std::int32_t>> opening;
+    for (std::size_t copy = cut.node_of_copy().size(); copy < lanes.node_of_copy.size(); ++copy) {
+        opening[lanes.node_of_copy[copy]].push_back(static_cast<std::int32_t>(copy));
+    }
+    const auto copies_of = [&](std::int32_t node) {
+        std::vector<std::int32_t> copies = cut.copies_of_node(node);
+        const auto found = opening.find(node);
+        if (found != opening.end()) copies.insert(copies.end(), found->second.begin(), found->second.end());
+        return copies;
+    };
     const auto all_copies = [&](std::span<const std::int32_t> nodes) {
         std::vector<std::int32_t> copies;
         for (const std::int32_t node : nodes) {
-            const std::vector<std::int32_t> of_node = cut.copies_of_node(node);
+            const std::vector<std::int32_t> of_node = copies_of(node);
             copies.insert(copies.end(), of_node.begin(), of_node.end());
         }
         return copies;
@@ -151,7 +135,7 @@ Scene divided(const Scene& scene, const mesh::CutMesh& cut) {
     result.fixed_nodes = all_copies(scene.fixed_nodes);
     result.prescribed.clear();
     for (const PrescribedDisplacement& prescribed : scene.prescribed) {
-        for (const std::int32_t copy : cut.copies_of_node(prescribed.node)) {
+        for (const std::int32_t copy : copies_of(prescribed.node)) {
             result.prescribed.push_back({copy, prescribed.axis, prescribed.displacement});
         }
     }

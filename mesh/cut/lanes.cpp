@@ -1,0 +1,74 @@
+#include "lancet/mesh/cut/lanes.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "lancet/mesh/cut/front_opening.hpp"
+
+namespace lancet::mesh {
+
+namespace {
+
+/// Collects the lanes of one element; equal ones are added up.
+class ElementLanes {
+  public:
+    explicit ElementLanes(std::int32_t element) : element_(element) {}
+
+    void add(const Tetrahedron& copies, const PartMoments& moments, double weight = 1) {
+        const auto same = std::ranges::find_if(lanes_, [&](const Lanes::Lane& lane) { return lane.copies == copies; });
+        Lanes::Lane& lane = same != lanes_.end() ? *same : lanes_.emplace_back(element_, copies, empty_moments());
+        add_weighted(lane.moments, moments, weight);
+    }
+
+    std::vector<Lanes::Lane> take() {
+        // One lane that has everything is whole, whatever the rounding of its pieces.
+        if (lanes_.size() == 1) lanes_.front().moments = PartMoments{};
+        return std::move(lanes_);
+    }
+
+  private:
+    std::int32_t element_;
+    std::vector<Lanes::Lane> lanes_;
+};
+
+}  // namespace
+
+Lanes lanes(const CutMesh& cut, Fronts fronts) {
+    Lanes result;
+    result.node_of_copy.assign(cut.node_of_copy().begin(), cut.node_of_copy().end());
+    std::map<std::int32_t, std::vector<FrontOpening::Piece>> opening;
+    if (fronts == Fronts::blended) {
+        FrontOpening front(cut);
+        result.opened_from = front.opened_from();
+        for (const std::int32_t copy : result.opened_from) {
+            result.node_of_copy.push_back(cut.node_of_copy()[static_cast<std::size_t>(copy)]);
+        }
+        opening = front.pieces();
+    }
+    const std::size_t elements = cut.mesh().tetrahedra().size();
+    std::vector<Lanes::Lane> further;
+    for (std::size_t e = 0; e < elements; ++e) {
+        const auto element = static_cast<std::int32_t>(e);
+        const auto pieces = opening.find(element);
+        if (pieces == opening.end() && cut.cells(element) == nullptr) {
+            result.lanes.push_back({element, cut.parts()[e], PartMoments{}});
+            continue;
+        }
+        ElementLanes of_element(element);
+        if (pieces != opening.end()) {
+            for (const FrontOpening::Piece& piece : pieces->second)
+                of_element.add(piece.copies, piece.moments, piece.weight);
+        } else {
+            for (const std::int32_t part : cut.parts_of_element(element)) {
+                of_element.add(cut.parts()[static_cast<std::size_t>(part)], cut.moments(part));
+            }
+        }
+        std::vector<Lanes::Lane> list = of_element.take();
+        result.lanes.push_back(list.front());
+        further.insert(further.end(), list.begin() + 1, list.end());
+    }
+    result.lanes.insert(result.lanes.end(), further.begin(), further.end());
+    return result;
+}
+
+}  // namespace lancet::mesh
