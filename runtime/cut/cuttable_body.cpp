@@ -68,10 +68,10 @@ void take_over(const Motion& before, const mesh::CutMesh& mesh_before, std::span
 
 }  // namespace
 
-CuttableBody::CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler, mesh::Fronts fronts)
+CuttableBody::CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler, const CutOptions& options)
     : scene_(std::move(scene)),
       settings_(settings),
-      fronts_(fronts),
+      options_(options),
       mesh_(scene_.mesh),
       body_(make_body(scene_, settings, scheduler)),
       scene_loads_(external_loads(scene_)) {}
@@ -85,14 +85,16 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
         mesh.cut(surface, front,
                  configuration == Configuration::current ? std::span(before.positions).first(mesh.node_of_copy().size())
                                                          : std::span<const Point>());
-    const bool moves_front = fronts_ == mesh::Fronts::blended && update.mesh.touched_elements > 0;
+    const bool moves_front = options_.fronts == mesh::Fronts::blended && update.mesh.touched_elements > 0;
     if (update.mesh.new_parts == 0 && update.mesh.new_copies == 0 && !moves_front) {
         mesh_ = std::move(mesh);
         return update;
     }
     const double start = steady_seconds();
     std::vector<std::int32_t> opened_from;
-    const Scene scene = divided(scene_, mesh, fronts_, &opened_from);
+    Scene scene = divided(scene_, mesh, options_.fronts, &opened_from);
+    update.crumbs = crumbs(scene, options_.largest_crumb);
+    if (options_.crumbs == CrumbTreatment::drop) take_weight(scene, update.crumbs);
     std::vector<Point> loads = external_loads(scene);
     auto body = make_body(scene, settings_, scheduler);
     body->set_time(body_->time());
@@ -106,8 +108,17 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
     for (const auto& [node, target] : holds_) {
         for (const std::int32_t copy : copies_of_node(node)) body_->hold(copy, target);
     }
+    if (options_.crumbs != CrumbTreatment::keep) stop(update.crumbs);
     update.seconds_update = steady_seconds() - start;
     return update;
+}
+
+void CuttableBody::stop(std::span<const Crumb> crumbs) {
+    std::vector<Point> positions(body_->nodes());
+    body_->positions(positions);
+    for (const Crumb& crumb : crumbs) {
+        for (const std::int32_t node : crumb.nodes) body_->hold(node, positions[static_cast<std::size_t>(node)]);
+    }
 }
 
 std::vector<std::int32_t> CuttableBody::copies_of_node(std::int32_t node) const {

@@ -7,6 +7,7 @@
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
 #include "lancet/mesh/cut/lanes.hpp"
+#include "lancet/runtime/cut/crumbs.hpp"
 #include "lancet/runtime/simulate/body.hpp"
 
 namespace lancet::runtime {
@@ -20,7 +21,15 @@ enum class Configuration {
 /// What a cut changed, and what it took.
 struct CutUpdate {
     mesh::CutReport mesh;
-    double seconds_update = 0;  ///< building the body anew around the new parts and copies
+    std::vector<Crumb> crumbs{};  ///< all there are now, by nodes of the body
+    double seconds_update = 0;    ///< building the body anew around the new parts and copies
+};
+
+/// How cuts are treated.
+struct CutOptions {
+    mesh::Fronts fronts = mesh::Fronts::sharp;
+    CrumbTreatment crumbs = CrumbTreatment::keep;
+    double largest_crumb = 0.01;  ///< of the body's volume
 };
 
 /// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated
@@ -32,8 +41,7 @@ struct CutUpdate {
 class CuttableBody {
   public:
     /// Starts without a cut. Throws as make_body does.
-    CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler,
-                 mesh::Fronts fronts = mesh::Fronts::sharp);
+    CuttableBody(Scene scene, const Settings& settings, Scheduler& scheduler, const CutOptions& options = {});
 
     CutUpdate cut(Scheduler& scheduler, const mesh::CutSurface& surface,
                   Configuration configuration = Configuration::current,
@@ -65,11 +73,12 @@ class CuttableBody {
 
   private:
     void apply_loads();
+    void stop(std::span<const Crumb> crumbs);
     std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
 
     Scene scene_;  ///< without cuts
     Settings settings_;
-    mesh::Fronts fronts_;
+    CutOptions options_;
     mesh::CutMesh mesh_;
     std::vector<std::int32_t> opened_from_;  ///< see mesh::Lanes
     std::unique_ptr<DeformableBody> body_;

@@ -15,20 +15,7 @@ namespace lancet::runtime {
 
 namespace {
 
-/// Parts thinner than this are taken as so thick: far below the rounding of every sum that they enter, and thick enough
-/// that a float holds their stiffness.
 constexpr double smallest_fraction = 1e-20;
-
-mesh::PartMoments not_too_thin(const mesh::PartMoments& moments) {
-    if (moments.fraction >= smallest_fraction) return moments;
-    mesh::PartMoments thicker;
-    thicker.fraction = smallest_fraction;
-    for (double& first : thicker.first) first *= smallest_fraction;
-    for (auto& row : thicker.second) {
-        for (double& second : row) second *= smallest_fraction;
-    }
-    return thicker;
-}
 
 /// The lanes as elements, with their moments.
 void take_lanes(const Scene& scene, const mesh::Lanes& lanes, Scene& divided, mesh::TetMesh::Definition& definition) {
@@ -37,7 +24,8 @@ void take_lanes(const Scene& scene, const mesh::Lanes& lanes, Scene& divided, me
         if (!is_whole && divided.parts.empty()) divided.parts.place.assign(lanes.lanes.size(), -1);
         if (!is_whole) {
             divided.parts.place[definition.tetrahedra.size()] = static_cast<std::int32_t>(divided.parts.moments.size());
-            divided.parts.moments.push_back(not_too_thin(lane.moments));
+            divided.parts.moments.push_back(lane.moments.fraction < smallest_fraction ? smallest_moments()
+                                                                                      : lane.moments);
         }
         definition.tetrahedra.push_back(lane.copies);
         definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(lane.element)]);
@@ -96,6 +84,12 @@ bool spread(const mesh::CutMesh& cut, const std::array<std::int32_t, Count>& nod
 }
 
 }  // namespace
+
+mesh::PartMoments smallest_moments() {
+    mesh::PartMoments moments = mesh::empty_moments();
+    add_weighted(moments, mesh::PartMoments{}, smallest_fraction);
+    return moments;
+}
 
 Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts,
               std::vector<std::int32_t>* opened_from) {

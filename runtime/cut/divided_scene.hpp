@@ -19,4 +19,8 @@ namespace lancet::runtime {
 Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts = mesh::Fronts::sharp,
               std::vector<std::int32_t>* opened_from = nullptr);
 
+/// What thinner parts are taken as: 1e-20 of an element, far below the rounding of every sum that it enters, and thick
+/// enough that a float holds its stiffness.
+mesh::PartMoments smallest_moments();
+
 }  // namespace lancet::runtime

@@ -355,6 +355,35 @@ TEST(CuttableBody, LoadsOnTheSurfaceArePartedByTheirMaterial) {
     EXPECT_NEAR(force[1][0], 7 * 0.06, 1e-14);
 }
 
+TEST(CuttableBody, CrumbsAreListedAndKeptFrozenOrDropped) {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    for (const auto treatment :
+         {runtime::CrumbTreatment::keep, runtime::CrumbTreatment::freeze, runtime::CrumbTreatment::drop}) {
+        EXPECT_EQ(runtime::crumb_treatment_from_string(to_string(treatment)), treatment);
+        CuttableBody body(bar(true), precise(), *scheduler, {.crumbs = treatment});
+        for (int step = 0; step < 5; ++step) body.step(*scheduler);
+        // A corner of the free end, which has sunk by now, of three cuts' length 0.03.
+        const auto update =
+            body.cut(*scheduler, CutSurface::plane({0.77, 0.2, 0.2}, {1, 1, 1}), runtime::Configuration::rest);
+        ASSERT_EQ(update.crumbs.size(), 1U);
+        EXPECT_NEAR(update.crumbs[0].volume, 0.03 * 0.03 * 0.03 / 6, 1e-15);
+        const auto crumb = static_cast<std::size_t>(update.crumbs[0].nodes.front());
+        const State before(body.body());
+        for (int step = 0; step < 5; ++step) EXPECT_FALSE(body.step(*scheduler).lost);
+        const State after(body.body());
+        const double mass = total(momenta(body)).mass;
+        const double moved = distance(before.positions[crumb], after.positions[crumb]);
+        if (treatment == runtime::CrumbTreatment::keep) {
+            EXPECT_GT(moved, 1e-2);
+        } else {
+            EXPECT_LT(moved, 1e-12);
+        }
+        const double dropped = treatment == runtime::CrumbTreatment::drop ? 500 * update.crumbs[0].volume : 0;
+        EXPECT_NEAR(mass, 16 - dropped, 1e-12);
+    }
+    EXPECT_THROW((void)runtime::crumb_treatment_from_string("eat"), Error);
+}
+
 TEST(CuttableBody, ScenesThatDoNotFitAreRefused) {
     const runtime::Scene scene = bar(true);
     mesh::CutMesh other(mesh::box({.cells = {2, 2, 2}}));

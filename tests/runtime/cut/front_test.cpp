@@ -188,7 +188,7 @@ TEST(Front, ABodyWithABlendedFrontKeepsItsMomentumAndComesApart) {
     settings.time_step = 0.005;
     settings.conjugate_gradients = {.iterations = 300, .tolerance = 1e-13};
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
-    runtime::CuttableBody body(scene, settings, *scheduler, Fronts::blended);
+    runtime::CuttableBody body(scene, settings, *scheduler, {.fronts = Fronts::blended});
     std::vector<Point> velocities;
     for (const Point& x : scene.mesh.nodes()) velocities.push_back({0.1 * std::sin(9 * x[1]), x[0], -0.4 * x[2]});
     body.body().set_velocities(velocities);
