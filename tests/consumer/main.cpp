@@ -9,6 +9,7 @@
 #include "lancet/kernels/isa/instruction_set.hpp"
 #include "lancet/mesh/generate/box.hpp"
 #include "lancet/mesh/tet_mesh.hpp"
+#include "lancet/runtime/cut/cuttable_body.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/simulate/body.hpp"
 
@@ -52,6 +53,15 @@ int use_lancet() {
     // A clamped bar falls less than freely: g t^2 / 2 after 0.2 s.
     if (!(sag > 0.01 && sag < 0.25)) {
         std::fprintf(stderr, "the free end of the bar sank by %g m\n", sag);
+        return 1;
+    }
+    lancet::runtime::CuttableBody cut(scene, {.time_step = 0.02}, *scheduler,
+                                      {.fronts = lancet::mesh::Fronts::blended});
+    const std::array<lancet::mesh::Point, 2> above{{{1.1, 2, -1}, {1.1, 2, 2}}}, below{{{1.1, 0.3, -1}, {1.1, 0.3, 2}}};
+    cut.cut(*scheduler, lancet::mesh::CutSurface::swept(std::array{above, below}));
+    cut.step(*scheduler);
+    if (cut.mesh().node_of_copy().size() <= mesh.nodes().size()) {
+        std::fprintf(stderr, "a cut separated nothing\n");
         return 1;
     }
     try {
