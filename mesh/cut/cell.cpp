@@ -8,20 +8,16 @@ namespace lancet::mesh {
 namespace {
 
 struct Sides {
-    int lowest = 1;
-    int highest = -1;
-    std::map<int, int> of_point{};
+    bool has_below = false, has_above = false;
 };
 
 Sides sides_of(const PlanePool& pool, const Cell& cell, int plane) {
     Sides sides;
     for (const Cell::Face& face : cell.faces) {
         for (const int point : face.points) {
-            const auto [place, is_new] = sides.of_point.try_emplace(point, 0);
-            if (!is_new) continue;
-            place->second = pool.side(plane, point);
-            sides.lowest = std::min(sides.lowest, place->second);
-            sides.highest = std::max(sides.highest, place->second);
+            const int side = pool.side(plane, point);
+            sides.has_below = sides.has_below || side < 0;
+            sides.has_above = sides.has_above || side > 0;
         }
     }
     return sides;
@@ -69,7 +65,11 @@ Cell whole_tetrahedron(PlanePool& pool) {
 
 bool is_crossed(const PlanePool& pool, const Cell& cell, int plane) {
     const Sides sides = sides_of(pool, cell, plane);
-    return sides.lowest < 0 && sides.highest > 0;
+    return sides.has_below && sides.has_above;
+}
+
+bool reaches_above(const PlanePool& pool, const Cell& cell, int plane) {
+    return sides_of(pool, cell, plane).has_above;
 }
 
 bool has_face_in(const PlanePool& pool, const Cell& cell, int plane) {
@@ -80,7 +80,7 @@ bool has_face_in(const PlanePool& pool, const Cell& cell, int plane) {
 
 std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, int plane) {
     const Sides sides = sides_of(pool, cell, plane);
-    if (sides.lowest >= 0 || sides.highest <= 0) return std::nullopt;
+    if (!sides.has_below || !sides.has_above) return std::nullopt;
 
     std::pair<Cell, Cell> pieces;
     std::map<int, int> border_below, border_above;  // edges in the plane, as they run in the faces
@@ -92,7 +92,7 @@ std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, in
         int lowest = 0, highest = 0;
         for (std::size_t k = 0; k < count; ++k) {
             const int from = face.points[k], to = face.points[(k + 1) % count];
-            const int here = sides.of_point.at(from), there = sides.of_point.at(to);
+            const int here = pool.side(plane, from), there = pool.side(plane, to);
             lowest = std::min(lowest, here);
             highest = std::max(highest, here);
             if (here <= 0) below.points.push_back(from);

@@ -28,6 +28,8 @@ std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, in
 
 /// True where the plane goes through the inside of the cell.
 bool is_crossed(const PlanePool& pool, const Cell& cell, int plane);
+/// True where some of the cell lies on the positive side of the plane.
+bool reaches_above(const PlanePool& pool, const Cell& cell, int plane);
 /// True where a face of the cell lies in the plane.
 bool has_face_in(const PlanePool& pool, const Cell& cell, int plane);
 

@@ -41,21 +41,23 @@ void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 
             is_cover = is_cover || has_face_in(pool_, cells_[c], plane);
             continue;
         }
+        bool misses = false;
+        for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
+            misses = !reaches_above(pool_, cells_[c], border(k));
+        }
+        if (misses) continue;
         Cell inside = cells_[c];
         std::vector<Cell> outside;
-        bool misses = false;
         for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
             if (auto pieces = split(pool_, inside, border(k))) {
                 outside.push_back(std::move(pieces->first));
                 inside = std::move(pieces->second);
             } else {
-                misses = !std::ranges::any_of(inside.faces, [&](const Cell::Face& face) {
-                    return std::ranges::any_of(face.points,
-                                               [&](int point) { return pool_.side(border(k), point) > 0; });
-                });
+                misses = !reaches_above(pool_, inside, border(k));
             }
+            misses = misses || !is_crossed(pool_, inside, plane);
         }
-        if (misses || !is_crossed(pool_, inside, plane)) continue;
+        if (misses) continue;
         if (extends) {
             inside = cells_[c];
             outside.clear();
@@ -126,6 +128,7 @@ std::vector<int> ElementCells::regroup() {
     }
     for (std::size_t c = 0; c < cells_.size(); ++c) part_of_cell_[c] = number[find(static_cast<int>(c))];
     parts_ = static_cast<int>(before.size());
+    pool_.forget_sides();
     return before;
 }
 
@@ -181,9 +184,7 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
             for (const int point : pieces->second.faces.back().points) polygon.push_back(pool.coordinates(point));
             continue;
         }
-        const bool is_above = std::ranges::any_of(cells_[c].faces, [&](const Cell::Face& face) {
-            return std::ranges::any_of(face.points, [&](int point) { return pool.side(plane, point) > 0; });
-        });
+        const bool is_above = reaches_above(pool, cells_[c], plane);
         add_cell(is_above ? halves.above : halves.below, pool, cells_[c]);
     }
     return halves;

@@ -102,6 +102,15 @@ int PlanePool::add_point(const std::array<int, 3>& planes) {
 }
 
 int PlanePool::side(int plane_number, int point_number) const {
+    const auto row = static_cast<std::size_t>(plane_number), column = static_cast<std::size_t>(point_number);
+    if (sides_.size() <= row) sides_.resize(planes_.size());
+    std::vector<std::int8_t>& known = sides_[row];
+    if (known.size() <= column) known.resize(points_.size(), unknown);
+    if (known[column] == unknown) known[column] = static_cast<std::int8_t>(find_side(plane_number, point_number));
+    return known[column];
+}
+
+int PlanePool::find_side(int plane_number, int point_number) const {
     const StoredPoint& point = points_[static_cast<std::size_t>(point_number)];
     for (const int through : point.planes) {
         if (through == plane_number) return 0;

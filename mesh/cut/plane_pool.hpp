@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -30,8 +31,9 @@ class PlanePool {
     int add_point(const std::array<int, 3>& planes);
 
     int planes() const noexcept { return static_cast<int>(planes_.size()); }
-    /// -1, 0 or +1: the side of the plane on which the point lies.
+    /// -1, 0 or +1: the side of the plane on which the point lies. Answers are remembered until forget_sides.
     int side(int plane, int point) const;
+    void forget_sides() { sides_.clear(); }
     /// -1, 0 or +1: the sign of the plane's value at a corner.
     int side_of_corner(int plane, int corner) const;
     /// The values of a plane's function at the corners, rounded.
@@ -59,8 +61,12 @@ class PlanePool {
     const std::array<Exact, 4>& exact_values(int plane) const;
     const std::array<Exact, 4>& exact_weights(const StoredPoint& point) const;
 
+    int find_side(int plane, int point) const;
+
     std::vector<StoredPlane> planes_;
     std::vector<StoredPoint> points_;
+    static constexpr std::int8_t unknown = 2;
+    mutable std::vector<std::vector<std::int8_t>> sides_;  ///< [plane][point], as far as they were asked for
 };
 
 }  // namespace lancet::mesh

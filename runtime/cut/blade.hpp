@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lancet/runtime/cut/cuttable_body.hpp"
+
+namespace lancet::runtime {
+
+/// A straight blade that cuts what it is drawn through, while the body moves under it.
+///
+/// A stroke is swept through the material: it starts where the blade's edge was in the material before, not where that
+/// place is in space, so that strokes leave no uncut gap between them however the body has moved since. The edge is
+/// taken to the rest configuration at `segments` + 1 of its points, and is straight between them there. A point
+/// outside of the body goes along with the element that is nearest.
+class Blade {
+  public:
+    explicit Blade(int segments = 8);
+
+    /// Puts the edge somewhere, without cutting. Throws lancet::Error for places that are not finite.
+    void place(const CuttableBody& body, const Point& heel, const Point& tip);
+    /// Draws the edge on to a place, from where it was last, and cuts what lies between; the first call only places it.
+    CutUpdate draw(CuttableBody& body, Scheduler& scheduler, const Point& heel, const Point& tip);
+    /// Takes the blade away: the next draw starts anew.
+    void lift() noexcept { edge_.clear(); }
+
+  private:
+    int segments_;
+    std::vector<Point> edge_;  ///< at rest
+};
+
+/// Where the material that is now at `place` is at rest; outside of the body, as if the nearest element went on.
+Point rest_place(const CuttableBody& body, std::span<const Point> positions, const Point& place);
+
+}  // namespace lancet::runtime
