@@ -137,8 +137,10 @@ void add_cell(PartMoments& moments, const PlanePool& pool, const Cell& cell) {
     for (const Cell::Face& face : cell.faces) {
         if (std::ranges::find(face.points, apex) != face.points.end()) continue;
         for (std::size_t k = 2; k < face.points.size(); ++k) {
-            add_tetrahedron(moments, {pool.coordinates(apex), pool.coordinates(face.points[0]),
-                                      pool.coordinates(face.points[k - 1]), pool.coordinates(face.points[k])});
+            const std::array<int, 4> corners{apex, face.points[0], face.points[k - 1], face.points[k]};
+            std::array<Barycentric, 4> places{};
+            for (std::size_t i = 0; i < 4; ++i) places[i] = pool.coordinates(corners[i]);
+            add_tetrahedron(moments, places, pool.volume_fraction(corners));
         }
     }
 }

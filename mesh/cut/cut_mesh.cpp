@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <set>
 #include <string>
@@ -62,6 +63,7 @@ CutReport CutMesh::cut(const CutSurface& surface, FrontTreatment front, std::spa
         throw Error("cut: " + std::to_string(positions.size()) + " positions given; the mesh has " +
                     std::to_string(node_of_copy_.size()) + " copies of nodes");
     }
+    require_finite(surface, positions);
     Change change;
     const auto start = Clock::now();
     const auto parts_before = parts_.size(), copies_before = node_of_copy_.size();
@@ -86,6 +88,20 @@ CutReport CutMesh::cut(const CutSurface& surface, FrontTreatment front, std::spa
     change.report.new_parts = static_cast<std::int32_t>(parts_.size() - parts_before);
     change.report.new_copies = static_cast<std::int32_t>(node_of_copy_.size() - copies_before);
     return change.report;
+}
+
+void CutMesh::require_finite(const CutSurface& surface, std::span<const Point> positions) const {
+    for (std::size_t copy = 0; copy < positions.size(); ++copy) {
+        for (const double value : positions[copy]) {
+            if (!std::isfinite(value))
+                throw Error("cut: the position of copy " + std::to_string(copy) + " is not finite");
+        }
+    }
+    // Planes are finite where the makers of surfaces let them pass; a function is anybody's.
+    for (const Facet& facet : surface.facets()) {
+        if (!facet.plane.is_function()) continue;
+        for (const Point& place : positions.empty() ? mesh_->nodes() : positions) (void)facet.plane.value(place);
+    }
 }
 
 std::vector<std::int32_t> CutMesh::elements_near(const CutSurface& surface, std::span<const Point> positions) const {

@@ -55,7 +55,8 @@ class CutMesh {
 
     /// Cuts along a surface, given at rest or, with `positions` of all copies, where they are now. The work is
     /// proportional to the number of elements near the surface, but for one look at the boxes of all.
-    /// Throws lancet::Error where the positions are not as many as copies.
+    /// Throws lancet::Error where the positions are not as many as copies, or a coordinate or the value of a level set
+    /// is not finite; nothing is cut then.
     CutReport cut(const CutSurface& surface, FrontTreatment front = FrontTreatment::retract,
                   std::span<const Point> positions = {});
 
@@ -111,6 +112,7 @@ class CutMesh {
     };
 
     struct Change;
+    void require_finite(const CutSurface& surface, std::span<const Point> positions) const;
     std::vector<std::int32_t> elements_near(const CutSurface& surface, std::span<const Point> positions) const;
     void divide(std::int32_t element, const CutSurface& surface, FrontTreatment front, std::span<const Point> positions,
                 Change& change);

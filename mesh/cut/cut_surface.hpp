@@ -30,7 +30,8 @@ class CutSurface {
     static CutSurface triangulated(std::span<const Point> vertices, std::span<const Triangle> triangles);
     /// What a straight blade sweeps: its places are segments {heel, tip}, one after the other.
     static CutSurface swept(std::span<const std::array<Point, 2>> places);
-    /// Where a function of the place is zero. Within an element it is taken as linear between the nodes.
+    /// Where a function of the place is zero. Within an element it is taken as linear between the nodes. A cut throws
+    /// lancet::Error where its value at a node is not finite.
     static CutSurface level_set(std::function<double(const Point&)> function);
 
     std::span<const Facet> facets() const noexcept;

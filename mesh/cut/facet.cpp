@@ -1,6 +1,10 @@
 #include "lancet/mesh/cut/facet.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "lancet/kernels/error.hpp"
 
 namespace lancet::mesh {
 
@@ -9,8 +13,17 @@ Plane::Plane(const Point& origin, const Normal& normal)
       normal_(normal),
       rounded_normal_{normal[0].bounded(), normal[1].bounded(), normal[2].bounded()} {}
 
+double Plane::function_value(const Point& place) const {
+    const double value = function_(place);
+    if (std::isfinite(value)) return value;
+    std::ostringstream text;
+    text << "cut level set: the function is " << value << " at (" << place[0] << ", " << place[1] << ", " << place[2]
+         << "); expected a finite number";
+    throw Error(text.str());
+}
+
 Bounded Plane::value(const Point& place) const {
-    if (function_) return {function_(place), 0};
+    if (function_) return {function_value(place), 0};
     std::array<Bounded, 3> from_origin;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         from_origin[axis] = Bounded{place[axis], 0} - Bounded{origin_[axis], 0};
@@ -19,7 +32,7 @@ Bounded Plane::value(const Point& place) const {
 }
 
 Exact Plane::exact(const Point& place) const {
-    if (function_) return Exact(function_(place));
+    if (function_) return Exact(function_value(place));
     std::array<Exact, 3> from_origin;
     for (std::size_t axis = 0; axis < 3; ++axis) from_origin[axis] = Exact(place[axis]) - Exact(origin_[axis]);
     return dot(normal_, from_origin);

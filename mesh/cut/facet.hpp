@@ -18,10 +18,15 @@ class Plane {
     Plane(const Point& origin, const Normal& normal);
     explicit Plane(std::function<double(const Point&)> function) : function_(std::move(function)) {}
 
+    /// Both throw lancet::Error where a function's value is not finite.
     Bounded value(const Point& place) const;
     Exact exact(const Point& place) const;
+    /// True where the values are those of a function that was given.
+    bool is_function() const noexcept { return static_cast<bool>(function_); }
 
   private:
+    double function_value(const Point& place) const;
+
     Point origin_{};
     Normal normal_{};
     std::array<Bounded, 3> rounded_normal_{};

@@ -47,7 +47,10 @@ void add_weighted(PartMoments& moments, const PartMoments& other, double weight)
 }
 
 void add_tetrahedron(PartMoments& moments, const std::array<Barycentric, 4>& corners) {
-    const double fraction = volume_fraction(corners);
+    add_tetrahedron(moments, corners, volume_fraction(corners));
+}
+
+void add_tetrahedron(PartMoments& moments, const std::array<Barycentric, 4>& corners, double fraction) {
     // Over a tetrahedron of volume v, a linear function f with values f_k at the corners has int f = v/4 sum_k f_k, and
     // int f g = v/20 (sum_k f_k g_k + sum_k f_k sum_l g_l).
     Barycentric sum{};

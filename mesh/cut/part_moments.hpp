@@ -32,5 +32,7 @@ void add_weighted(PartMoments& moments, const PartMoments& other, double weight)
 /// an edge or a face of the tetrahedron: they are not subtracted from large ones. A slice through the middle is known
 /// only as well as the differences of its corners, to about 1e-16 over its thickness.
 void add_tetrahedron(PartMoments& moments, const std::array<Barycentric, 4>& corners);
+/// The same, where the volume over that of the whole is known.
+void add_tetrahedron(PartMoments& moments, const std::array<Barycentric, 4>& corners, double fraction);
 
 }  // namespace lancet::mesh

@@ -5,6 +5,14 @@
 
 namespace lancet::mesh {
 
+namespace {
+
+/// The relative precision of the coordinates of points. Sums of a few products lose some units; this is far above them,
+/// and far below what volumes and sides notice.
+constexpr double precise = 0x1p-44;
+
+}  // namespace
+
 PlanePool::PlanePool() {
     for (std::size_t corner = 0; corner < 4; ++corner) {
         StoredPlane face;
@@ -77,8 +85,6 @@ const std::array<Exact, 4>& PlanePool::exact_weights(const StoredPoint& point) c
 }
 
 int PlanePool::add_point(const std::array<int, 3>& planes) {
-    // Sums of a few products lose some units; this is far above them, and far below what volumes and sides notice.
-    constexpr double precise = 0x1p-44;
     StoredPoint point{.planes = planes};
     point.weights = cross(plane(planes[0]).values, plane(planes[1]).values, plane(planes[2]).values);
     // The point lies in the tetrahedron: no two weights differ in sign.
@@ -99,6 +105,53 @@ int PlanePool::add_point(const std::array<int, 3>& planes) {
     for (std::size_t k = 0; k < 4; ++k) point.coordinates[k] = point.weights[k].value / sum;
     points_.push_back(point);
     return static_cast<int>(points_.size()) - 1;
+}
+
+double PlanePool::volume_fraction(const std::array<int, 4>& points) const {
+    // |det c| of the barycentric coordinates c_k. As these add up to one, a column may be replaced by ones, and with
+    // the row of a base point subtracted det c = +-det (c_k,i - c_b,i). The base and the column left out are those of
+    // the largest coordinate: the other coordinates of the base are then small, zero in a corner, and the differences
+    // of small numbers keep their relative precision.
+    std::array<const Barycentric*, 4> c{};
+    for (std::size_t k = 0; k < 4; ++k) c[k] = &coordinates(points[k]);
+    std::size_t base = 0, left_out = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            if ((*c[k])[i] > (*c[base])[left_out]) base = k, left_out = i;
+        }
+    }
+    const auto coordinate = [&](std::size_t k, std::size_t i) {
+        const double value = (*c[k % 4])[i];
+        return Bounded{value, 4 * precise * std::abs(value)};  // a quotient of two such numbers
+    };
+    std::array<std::array<Bounded, 3>, 3> d{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            const std::size_t i = (left_out + 1 + column) % 4;
+            d[row][column] = coordinate(base + 1 + row, i) - coordinate(base, i);
+        }
+    }
+    const Bounded volume = dot(d[0], cross(d[1], d[2]));
+    // Between planes that nearly coincide differences cancel.
+    return volume.is_precise(0x1p-30) ? std::abs(volume.value) : exact_volume_fraction(points);
+}
+
+double PlanePool::exact_volume_fraction(const std::array<int, 4>& points) const {
+    // Weights w_k are coordinates times their sums s_k: |det c| = |det w| / (s_0 s_1 s_2 s_3). Powers of two move
+    // between both, so that neither leaves the range of double.
+    const auto weights = [&](std::size_t k) -> const std::array<Exact, 4>& {
+        return exact_weights(points_[static_cast<std::size_t>(points[k])]);
+    };
+    Exact determinant = dot(weights(0), cross(weights(1), weights(2), weights(3)));
+    double divisor = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::array<Exact, 4>& w = weights(k);
+        const double sum = std::abs(((w[0] + w[1]) + (w[2] + w[3])).value());
+        const int exponent = std::ilogb(sum);
+        determinant = determinant * Exact(std::ldexp(1.0, -exponent));
+        divisor *= std::ldexp(sum, -exponent);
+    }
+    return std::abs(determinant.value()) / divisor;
 }
 
 int PlanePool::side(int plane_number, int point_number) const {

@@ -43,6 +43,10 @@ class PlanePool {
     /// To nearly full relative precision, and exactly zero where they are.
     const Barycentric& coordinates(int point) const { return points_[static_cast<std::size_t>(point)].coordinates; }
 
+    /// The volume of the tetrahedron with these points as corners over that of the pool's, to a relative 2^-30 however
+    /// thin it is.
+    double volume_fraction(const std::array<int, 4>& points) const;
+
   private:
     struct StoredPlane {
         const Plane* source = nullptr;  ///< nothing where the values are exact
@@ -60,6 +64,7 @@ class PlanePool {
     const StoredPlane& plane(int number) const { return planes_[static_cast<std::size_t>(number)]; }
     const std::array<Exact, 4>& exact_values(int plane) const;
     const std::array<Exact, 4>& exact_weights(const StoredPoint& point) const;
+    double exact_volume_fraction(const std::array<int, 4>& points) const;
 
     int find_side(int plane, int point) const;
 

@@ -142,6 +142,24 @@ TEST(CutMesh, OneUnitInTheLastPlaceBesideTheFacesMakesSlivers) {
     }
 }
 
+// Between planes that nearly coincide the coordinates of the corners cancel; their volumes do not.
+TEST(CutMesh, ALayerOfOneUnitInTheLastPlaceHasItsVolume) {
+    for (const double x : {0.3, 0.41}) {
+        for (const double normal : {1.0, -3.0}) {
+            CutMesh cut = cube(4);
+            const double next = std::nextafter(x, 1.0);
+            cut.cut(CutSurface::plane({x, 0.2, 0.7}, {normal, 0, 0}));
+            cut.cut(CutSurface::plane({next, 0.4, 0.1}, {1, 0, 0}));
+            expect_consistent(cut);
+            const auto found = pieces(cut);
+            ASSERT_EQ(found.size(), 3U);
+            double thinnest = 1;
+            for (const Piece& piece : found) thinnest = std::min(thinnest, piece.volume);
+            EXPECT_NEAR(thinnest / (next - x), 1, 1e-8);
+        }
+    }
+}
+
 TEST(CutMesh, CrossingPlanesMakeQuartersAndEighths) {
     for (const double where : {0.5, 0.4375, 0.41}) {
         CutMesh cut = cube(4);
@@ -401,6 +419,24 @@ TEST(CutMesh, BadSurfacesAndPositionsAreRefused) {
     EXPECT_THROW(CutSurface::triangulated(line, missing), Error);
     CutMesh cut = cube(1);
     EXPECT_THROW(cut.cut(CutSurface::plane({0.5, 0, 0}, {1, 0, 0}), mesh::FrontTreatment::retract, line), Error);
+}
+
+TEST(CutMesh, PlacesAndFunctionsThatAreNotFiniteAreRefusedAndLeaveNoTrace) {
+    CutMesh cut = cube(2);
+    cut.cut(CutSurface::plane({0.4, 0, 0}, {1, 0, 0}));
+    const std::vector<mesh::Tetrahedron> before(cut.parts().begin(), cut.parts().end());
+    for (const double bad : {static_cast<double>(NAN), HUGE_VAL, -HUGE_VAL}) {
+        // Bad at the last corner alone: by then the other elements have been found.
+        const auto function = [&](const Point& x) { return x[0] + x[1] + x[2] > 2.9 ? bad : x[2] - 0.3; };
+        EXPECT_THROW(cut.cut(CutSurface::level_set(function)), Error);
+        std::vector<Point> positions = cut.rest_positions();
+        positions.back()[1] = bad;
+        EXPECT_THROW(cut.cut(CutSurface::plane({0, 0, 0.3}, {0, 0, 1}), mesh::FrontTreatment::retract, positions),
+                     Error);
+        EXPECT_TRUE(std::ranges::equal(cut.parts(), before));
+        expect_consistent(cut);
+    }
+    EXPECT_GT(cut.cut(CutSurface::plane({0, 0, 0.3}, {0, 0, 1})).new_parts, 0);
 }
 
 }  // namespace
