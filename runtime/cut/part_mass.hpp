@@ -15,9 +15,10 @@
 /// | weighted_diagonal | v_p <phi_i^2> / sum_j <phi_j^2>      | the mass                         |
 /// | consistent        | <phi_i phi_j>                        | the mass, its centre and inertia |
 ///
-/// Fraction lumping is for explicit integration: no cut shortens the critical step. Let K_e and M_e be the stiffness
-/// and the lumped mass of a whole element e. A part p of it has v_p K_e and v_p M_e, on its own copies of the nodes.
-/// For any motion u, with u_p its values at the corners of p and omega_e^2 the largest eigenvalue of (K_e, M_e),
+/// Fraction lumping is for explicit integration: no cut brings the critical step below the elements' own. Let K_e and
+/// M_e be the stiffness and the lumped mass of a whole element e. A part p of it has v_p K_e and v_p M_e, on its own
+/// copies of the nodes. For any motion u, with u_p its values at the corners of p and omega_e^2 the largest eigenvalue
+/// of (K_e, M_e),
 ///
 ///     u^T K u = sum_p v_p u_p^T K_e u_p <= sum_p v_p omega_e^2 u_p^T M_e u_p <= max_e omega_e^2 u^T M u,
 ///

@@ -427,6 +427,9 @@ std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& se
         if (!std::isfinite(value)) throw Error("scene: gravity and damping must be finite");
     }
     if (scene.rayleigh_mass < 0 || scene.rayleigh_stiffness < 0) throw Error("scene: damping must not be negative");
+    if (!is_explicit(settings.integrator) && !settings.force_preconditioner) {
+        require_preconditioner(scene, settings.preconditioner);
+    }
     switch (settings.scalar) {
         case ScalarMode::single_precision:
             return std::make_unique<BodyOf<float, float>>(scene, settings, scheduler);

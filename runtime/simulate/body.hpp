@@ -136,8 +136,9 @@ class DeformableBody {
 };
 
 /// Builds a body. The scheduler is used to set it up; each step takes one of its own. Throws lancet::Error for a scene
-/// or settings that make no sense, and for an explicit integrator whose time step is longer than the critical one at
-/// rest (unless settings.force_time_step).
+/// or settings that make no sense, for one with parts and no preconditioner (unless settings.force_preconditioner), and
+/// for an explicit integrator whose time step is longer than the critical one at rest (unless
+/// settings.force_time_step).
 std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler);
 
 }  // namespace lancet::runtime

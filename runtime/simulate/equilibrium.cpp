@@ -437,6 +437,7 @@ EquilibriumReport find_equilibrium(const Scene& scene, const EquilibriumSettings
                                    std::span<Point> positions) {
     validate(settings);
     if (scene.mesh.tetrahedra().empty()) throw Error("scene: the mesh has no elements");
+    if (!settings.force_preconditioner) require_preconditioner(scene, settings.preconditioner);
     if (scene.floor) throw Error("equilibrium: the scene has a floor; expected none, contact is for dynamics");
     if (positions.size() != scene.mesh.nodes().size()) {
         throw Error(std::to_string(positions.size()) + " positions given; the mesh has " +

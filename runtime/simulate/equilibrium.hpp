@@ -26,6 +26,7 @@ struct EquilibriumSettings {
     /// The coarse space knows of nodes that are held in all components; where those do not hold the body, it gives way
     /// to block Jacobi, which it is made of.
     PreconditionerKind preconditioner = PreconditionerKind::coarse;
+    bool force_preconditioner = false;         ///< see Settings
     double tolerance = 1e-9;                   ///< of the residual against the loads, or the reactions where none are
     int newton_iterations = 50;                ///< at most, for each load step
     int conjugate_gradient_iterations = 5000;  ///< at most, for each linear solve
@@ -70,7 +71,8 @@ struct EquilibriumReport {
 /// says why. `positions`, in the mesh's order, hold the start (the rest positions, or a guess) and take the result: the
 /// last equilibrium that was found.
 ///
-/// Throws lancet::Error for a scene or settings that make no sense, for a floor, and for components that nothing holds
+/// Throws lancet::Error for a scene or settings that make no sense, for one with parts and no preconditioner (unless
+/// settings.force_preconditioner), for a floor, and for components that nothing holds
 /// in all six rigid motions, naming them, unless `hold_floating` is set.
 EquilibriumReport find_equilibrium(const Scene& scene, const EquilibriumSettings& settings, Scheduler& scheduler,
                                    std::span<Point> positions);

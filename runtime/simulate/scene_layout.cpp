@@ -1,5 +1,6 @@
 #include "lancet/runtime/simulate/scene_layout.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "lancet/kernels/error.hpp"
@@ -29,6 +30,41 @@ void validate_constraints(const Scene& scene) {
     }
 }
 
+void validate_parts(const Scene& scene) {
+    const ElementParts& parts = scene.parts;
+    if (parts.empty()) return;
+    const std::size_t elements = scene.mesh.tetrahedra().size();
+    if (parts.place.size() != elements) {
+        throw Error("scene: parts for " + std::to_string(parts.place.size()) + " elements; the mesh has " +
+                    std::to_string(elements));
+    }
+    for (std::size_t e = 0; e < elements; ++e) {
+        if (parts.place[e] >= static_cast<std::int64_t>(parts.moments.size())) {
+            throw Error("scene: element " + std::to_string(e) + " has the moments " + std::to_string(parts.place[e]) +
+                        "; there are " + std::to_string(parts.moments.size()));
+        }
+        const mesh::PartMoments moments = parts.of(e);
+        bool is_good = moments.fraction > 0 && std::isfinite(moments.fraction);
+        for (std::size_t i = 0; i < 4; ++i) {
+            is_good = is_good && moments.first[i] >= 0 && std::isfinite(moments.first[i]);
+            for (std::size_t j = 0; j < 4; ++j) {
+                is_good = is_good && moments.second[i][j] >= 0 && std::isfinite(moments.second[i][j]);
+            }
+        }
+        if (!is_good) {
+            throw Error("scene: the part of element " + std::to_string(e) +
+                        " has moments that are not positive and finite");
+        }
+    }
+}
+
+void require_preconditioner(const Scene& scene, PreconditionerKind kind) {
+    if (scene.parts.empty() || kind != PreconditionerKind::none) return;
+    throw Error(
+        "scene: without a preconditioner conjugate gradients do not see thin parts of cut elements; expected jacobi, "
+        "block-jacobi or coarse, or force_preconditioner");
+}
+
 kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
                                     const kernels::NumberingOptions& options) {
     const std::span<const mesh::Point> nodes = scene.mesh.nodes();
@@ -40,6 +76,7 @@ kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
 }
 
 ElementMaterials element_materials(const Scene& scene) {
+    validate_parts(scene);
     if (!scene.materials.contains(0)) throw Error("scene: region 0 has no material");
     ElementMaterials materials;
     std::map<int, std::int32_t> place;

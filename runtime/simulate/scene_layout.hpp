@@ -7,12 +7,21 @@
 #include "lancet/mesh/order.hpp"
 #include "lancet/runtime/simulate/scene.hpp"
 #include "lancet/runtime/solve/operator.hpp"
+#include "lancet/runtime/solve/preconditioner.hpp"
 
 namespace lancet::runtime {
 
 /// Throws lancet::Error for fixed nodes that do not exist, and for prescribed displacements of nodes or axes that do
 /// not exist, without a function, or given twice.
 void validate_constraints(const Scene& scene);
+
+/// Throws lancet::Error where the parts are not as many as elements, or name moments that do not exist, or moments are
+/// not positive and finite.
+void validate_parts(const Scene& scene);
+
+/// Throws lancet::Error for a scene with parts and no preconditioner: the stiffness of thin parts is as small as their
+/// fraction, so that the iterations grow without bound and the residual hides their errors.
+void require_preconditioner(const Scene& scene, PreconditionerKind kind);
 
 /// The solver's numbering of a scene's nodes. Throws lancet::Error for fixed nodes that do not exist.
 kernels::NodeNumbering number_scene(const Scene& scene, mesh::OrderingKind kind,
@@ -25,7 +34,8 @@ struct ElementMaterials {
     std::vector<double> fractions;  ///< how much of each element is there; empty: all
 };
 
-/// Throws lancet::Error if region 0 has no material.
+/// Throws lancet::Error if region 0 has no material, or the scene's parts do not go with its elements (see
+/// validate_parts).
 ElementMaterials element_materials(const Scene& scene);
 
 /// Nodal masses, [internal node], in kilograms: see corner_masses.

@@ -67,11 +67,12 @@ struct Settings {
     Linearisation linearisation = Linearisation::prediction;
     ConjugateGradientSettings conjugate_gradients{};
     PreconditionerKind preconditioner = PreconditionerKind::coarse;
-    double coarse_change = 0.2;      ///< see Preconditioner
-    int newton_iterations = 1;       ///< at most; 1: linearised once
-    double newton_tolerance = 1e-8;  ///< of the residual against that at the first linearisation and the loads
-    bool energy_safeguard = true;    ///< repeat a step that gained energy without work (see DeformableBody::step)
-    int safeguard_iterations = 8;    ///< Newton iterations of such a repeat, at most
+    bool force_preconditioner = false;  ///< take `none` for a scene with parts, whose thin ones it does not see
+    double coarse_change = 0.2;         ///< see Preconditioner
+    int newton_iterations = 1;          ///< at most; 1: linearised once
+    double newton_tolerance = 1e-8;     ///< of the residual against that at the first linearisation and the loads
+    bool energy_safeguard = true;       ///< repeat a step that gained energy without work (see DeformableBody::step)
+    int safeguard_iterations = 8;       ///< Newton iterations of such a repeat, at most
     mesh::OrderingKind ordering = mesh::OrderingKind::hilbert;
     kernels::NumberingOptions numbering{};
 };

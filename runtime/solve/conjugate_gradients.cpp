@@ -86,6 +86,24 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
 }
 
 template <class Real, class Accumulate>
+double ConjugateGradients<Real, Accumulate>::largest_correction(Scheduler& scheduler, std::span<const Accumulate> x) {
+    // The sums of products have been taken: their places are free.
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        double correction = 0, solution = 0;
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            correction = std::max(correction, static_cast<double>(std::abs(z_[i])));
+            solution = std::max(solution, static_cast<double>(std::abs(x[i])));
+        }
+        r_dot_z_[static_cast<std::size_t>(block)] = correction;
+        r_dot_r_[static_cast<std::size_t>(block)] = solution;
+    });
+    const double correction = *std::max_element(r_dot_z_.begin(), r_dot_z_.end());
+    const double solution = *std::max_element(r_dot_r_.begin(), r_dot_r_.end());
+    return correction == 0 ? 0 : correction / solution;
+}
+
+template <class Real, class Accumulate>
 ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
     Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter,
     std::span<const Accumulate> b, std::span<Accumulate> x, const ConjugateGradientSettings& settings,
@@ -147,7 +165,8 @@ ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
     result.residual = relative(products.r_dot_z);
     double previous_r_dot_z = 0, previous_alpha = 0;
     while (result.iterations < settings.iterations) {
-        if (products.r_dot_z == 0 || result.residual < settings.tolerance) break;
+        if (products.r_dot_z == 0) break;
+        if (result.residual < settings.tolerance && largest_correction(scheduler, x) <= settings.tolerance) break;
         const double z_dot_az = matrix.product(scheduler, z_.data());
         const double beta = result.iterations == 0 ? 0 : products.r_dot_z / previous_r_dot_z;
         const double curvature =

@@ -12,8 +12,12 @@ namespace lancet::runtime {
 
 /// When conjugate gradients stop.
 struct ConjugateGradientSettings {
-    int iterations = 10;   ///< at most
-    double tolerance = 0;  ///< relative, in the norm of the preconditioner: sqrt(r . B r / b . B b); 0: all iterations
+    int iterations = 10;  ///< at most
+    /// Relative: the norm of the residual with the preconditioner, sqrt(r . B r / b . B b), and then the largest entry
+    /// of the preconditioned residual B r against that of the solution. The norm is one of energy, in which nodes weigh
+    /// as much as they are stiff: thin parts of cut elements, of a volume fraction v, may be wrong by tolerance /
+    /// sqrt(v) before it sees them; the largest entry sees all alike. 0: all iterations.
+    double tolerance = 0;
 };
 
 /// How a solve ended.
@@ -56,6 +60,8 @@ class ConjugateGradients {
     Products advance(Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner,
                      const ConstraintFilter& filter, double alpha, double beta);
     Products sum_products() const noexcept;
+    /// The largest entry of z over that of x.
+    double largest_correction(Scheduler& scheduler, std::span<const Accumulate> x);
 
     const kernels::VectorKernels<Real, Accumulate>* kernels_;
     const kernels::NodeNumbering* numbering_;

@@ -10,7 +10,9 @@ enum class MassKind {
     lumped,             ///< row sums of the consistent mass at each corner
     weighted_diagonal,  ///< its diagonal, scaled to the mass (Hinton, Rock, Zienkiewicz 1976)
     consistent,         ///< int rho phi_i phi_j
-    fraction            ///< the mass in equal shares at all corners: a cut never shortens the critical step
+    /// The mass in equal shares at all corners: no cut brings the critical step below that of the worst whole element
+    /// by itself (see part_mass.hpp).
+    fraction
 };
 std::string_view to_string(MassKind kind) noexcept;
 /// Throws lancet::Error for a name that to_string does not give.

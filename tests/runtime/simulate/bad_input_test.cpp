@@ -55,6 +55,21 @@ TEST(BadScene, IsRefused) {
     expect_bad_scene([](auto& s) { s.mesh = mesh::TetMesh(); }, "no elements");
     expect_bad_scene([](auto& s) { s.materials.erase(0); }, "region 0");
     expect_bad_scene([](auto& s) { s.materials.clear(); }, "region 0");
+    const auto with_part = [](runtime::Scene& scene) -> mesh::PartMoments& {
+        scene.parts.place.assign(scene.mesh.tetrahedra().size(), -1);
+        scene.parts.place[3] = 0;
+        scene.parts.moments.resize(1);
+        return scene.parts.moments[0];
+    };
+    for (const double bad : {0.0, -0.5, nan, static_cast<double>(HUGE_VAL)}) {
+        expect_bad_scene([&](auto& s) { with_part(s).fraction = bad; }, "part of element 3");
+    }
+    for (const double bad : {-0.5, nan, static_cast<double>(HUGE_VAL)}) {
+        expect_bad_scene([&](auto& s) { with_part(s).first[2] = bad; }, "part of element 3");
+        expect_bad_scene([&](auto& s) { with_part(s).second[1][2] = bad; }, "part of element 3");
+    }
+    expect_bad_scene([&](auto& s) { with_part(s), s.parts.place.pop_back(); }, "scene: parts for");
+    expect_bad_scene([&](auto& s) { with_part(s), s.parts.place[1] = 1; }, "element 1 has the moments 1");
     for (const double poisson : {0.5, 0.7, -1.0, nan}) {
         expect_bad_scene([&](auto& s) { s.materials[1].poisson_ratio = poisson; }, "Poisson");
     }
