@@ -30,8 +30,8 @@ std::vector<BoundaryShare> face_shares(const ElementCells& cells, int corner) {
     std::array<std::size_t, 3> of{};
     for (int k = 0; k < 3; ++k) of[static_cast<std::size_t>(k)] = static_cast<std::size_t>((corner + 1 + k) % 4);
     std::map<int, BoundaryShare> shares;
-    for (std::size_t c = 0; c < cells.cells().size(); ++c) {
-        for (const Cell::Face& face : cells.cells()[c].faces) {
+    for (std::size_t c = 0; c < cells.cells(); ++c) {
+        for (const Cell::Face& face : cells.cell(c).faces) {
             if (face.half.plane != corner) continue;
             const Barycentric& a = pool.coordinates(face.points[0]);
             for (std::size_t k = 2; k < face.points.size(); ++k) {
@@ -57,8 +57,8 @@ std::vector<BoundaryShare> edge_shares(const ElementCells& cells, int first_corn
         return true;
     };
     std::map<std::pair<int, int>, std::set<int>> parts_of_piece;
-    for (std::size_t c = 0; c < cells.cells().size(); ++c) {
-        for (const Cell::Face& face : cells.cells()[c].faces) {
+    for (std::size_t c = 0; c < cells.cells(); ++c) {
+        for (const Cell::Face& face : cells.cell(c).faces) {
             for (std::size_t k = 0; k < face.points.size(); ++k) {
                 const int from = face.points[k], to = face.points[(k + 1) % face.points.size()];
                 if (lies_on_edge(from) && lies_on_edge(to)) {

@@ -7,7 +7,15 @@
 
 namespace lancet::mesh {
 
-ElementCells::ElementCells() : plane_is_cut_(4, false), cells_{whole_tetrahedron(pool_)}, part_of_cell_{0} {}
+namespace {
+
+std::shared_ptr<SharedCell> shared(Cell&& cell) {
+    return std::make_shared<SharedCell>(std::move(cell));
+}
+
+}  // namespace
+
+ElementCells::ElementCells() : plane_is_cut_(4, false), cells_{shared(whole_tetrahedron(pool_))}, part_of_cell_{0} {}
 
 int ElementCells::add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut) {
     plane_is_cut_.push_back(is_cut);
@@ -37,16 +45,16 @@ void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 
     bool is_cover = false;
     for (std::size_t c = 0; c < count; ++c) {
         if (part_of_cell_[c] != part) continue;
-        if (!is_crossed(pool_, cells_[c], plane)) {
-            is_cover = is_cover || has_face_in(pool_, cells_[c], plane);
+        if (!is_crossed(pool_, cell(c), plane)) {
+            is_cover = is_cover || has_face_in(pool_, cell(c), plane);
             continue;
         }
         bool misses = false;
         for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
-            misses = !reaches_above(pool_, cells_[c], border(k));
+            misses = !reaches_above(pool_, cell(c), border(k));
         }
         if (misses) continue;
-        Cell inside = cells_[c];
+        Cell inside = cell(c);
         std::vector<Cell> outside;
         for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
             if (auto pieces = split(pool_, inside, border(k))) {
@@ -59,7 +67,7 @@ void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 
         }
         if (misses) continue;
         if (extends) {
-            inside = cells_[c];
+            inside = cell(c);
             outside.clear();
             for (std::size_t k = 0; k < facet.borders.size(); ++k) {
                 if (facet.borders[k].is_outer) continue;
@@ -70,9 +78,9 @@ void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 
             }
         }
         auto halves = split(pool_, inside, plane);
-        cells_[c] = std::move(halves->first);
-        cells_.push_back(std::move(halves->second));
-        for (Cell& cell : outside) cells_.push_back(std::move(cell));
+        cells_[c] = shared(std::move(halves->first));
+        cells_.push_back(shared(std::move(halves->second)));
+        for (Cell& cell : outside) cells_.push_back(shared(std::move(cell)));
         part_of_cell_.resize(cells_.size(), part);
         is_touched = true;
     }
@@ -93,14 +101,15 @@ std::vector<int> ElementCells::regroup() {
     // Open areas lie in planes of borders, which divide cells without separating them.
     struct Side {
         int cell;
-        std::size_t face;
+        Polygon polygon;
     };
     std::map<int, std::array<std::vector<Side>, 2>> open;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-        for (std::size_t f = 0; f < cells_[c].faces.size(); ++f) {
-            const HalfSpace& half = cells_[c].faces[f].half;
-            if (half.plane < 4 || plane_is_cut_[static_cast<std::size_t>(half.plane)]) continue;
-            open[half.plane][half.side > 0 ? 1 : 0].push_back({static_cast<int>(c), f});
+        const Cell& shape = cell(c);
+        for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+            const HalfSpace& half = shape.faces[f].half;
+            if (half.plane < 4 || is_cut(half.plane)) continue;
+            open[half.plane][half.side > 0 ? 1 : 0].push_back({static_cast<int>(c), polygon(shape, f)});
         }
     }
     for (const auto& [plane, sides] : open) {
@@ -108,8 +117,7 @@ std::vector<int> ElementCells::regroup() {
             for (const Side& above : sides[1]) {
                 const int a = find(below.cell), b = find(above.cell);
                 if (a == b || part_of_cell_[below.cell] != part_of_cell_[above.cell]) continue;
-                if (are_joined(pool_, polygon(cells_[below.cell], below.face), polygon(cells_[above.cell], above.face),
-                               covers_)) {
+                if (are_joined(pool_, below.polygon, above.polygon, covers_)) {
                     group[std::max(a, b)] = std::min(a, b);
                 }
             }
@@ -128,14 +136,19 @@ std::vector<int> ElementCells::regroup() {
     }
     for (std::size_t c = 0; c < cells_.size(); ++c) part_of_cell_[c] = number[find(static_cast<int>(c))];
     parts_ = static_cast<int>(before.size());
-    pool_.forget_sides();
     return before;
 }
 
 PartMoments ElementCells::moments(int part) const {
+    if (parts_ == 1) return {};
     PartMoments moments = empty_moments();
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-        if (part_of_cell_[c] == part) add_cell(moments, pool_, cells_[c]);
+        if (part_of_cell_[c] != part) continue;
+        if (!cells_[c]->moments) {
+            cells_[c]->moments = empty_moments();
+            add_cell(*cells_[c]->moments, pool_, cell(c));
+        }
+        add_weighted(moments, *cells_[c]->moments, 1);
     }
     return moments;
 }
@@ -144,15 +157,15 @@ std::vector<ElementCells::Section> ElementCells::sections() const {
     PlanePool pool = pool_;  // clipping adds points
     std::vector<Section> sections;
     for (std::size_t a = 0; a < cells_.size(); ++a) {
-        for (std::size_t f = 0; f < cells_[a].faces.size(); ++f) {
-            const HalfSpace& half = cells_[a].faces[f].half;
+        for (std::size_t f = 0; f < cell(a).faces.size(); ++f) {
+            const HalfSpace& half = cell(a).faces[f].half;
             if (!is_cut(half.plane) || half.side < 0) continue;
             for (std::size_t b = 0; b < cells_.size(); ++b) {
-                for (std::size_t g = 0; g < cells_[b].faces.size(); ++g) {
-                    const HalfSpace& other = cells_[b].faces[g].half;
+                for (std::size_t g = 0; g < cell(b).faces.size(); ++g) {
+                    const HalfSpace& other = cell(b).faces[g].half;
                     if (other.plane != half.plane || other.side > 0) continue;
-                    Polygon shared = polygon(cells_[a], f);
-                    for (const HalfSpace& edge : polygon(cells_[b], g).edges) {
+                    Polygon shared = polygon(cell(a), f);
+                    for (const HalfSpace& edge : polygon(cell(b), g).edges) {
                         shared = clip(pool, shared, edge);
                         if (shared.points.empty()) break;
                     }
@@ -177,15 +190,15 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
     Halves halves{.below = empty_moments(), .above = empty_moments()};
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (part_of_cell_[c] != part) continue;
-        if (const auto pieces = split(pool, cells_[c], plane)) {
+        if (const auto pieces = split(pool, cell(c), plane)) {
             add_cell(halves.below, pool, pieces->first);
             add_cell(halves.above, pool, pieces->second);
             std::vector<Barycentric>& polygon = halves.section.emplace_back();
             for (const int point : pieces->second.faces.back().points) polygon.push_back(pool.coordinates(point));
             continue;
         }
-        const bool is_above = reaches_above(pool, cells_[c], plane);
-        add_cell(is_above ? halves.above : halves.below, pool, cells_[c]);
+        const bool is_above = reaches_above(pool, cell(c), plane);
+        add_cell(is_above ? halves.above : halves.below, pool, cell(c));
     }
     return halves;
 }
@@ -193,7 +206,7 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
 bool ElementCells::touches(int part, int corner) const {
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (part_of_cell_[c] != part) continue;
-        for (const Cell::Face& face : cells_[c].faces) {
+        for (const Cell::Face& face : cell(c).faces) {
             for (const int point : face.points) {
                 if (pool_.coordinates(point)[static_cast<std::size_t>(corner)] == 1) return true;
             }
@@ -207,7 +220,7 @@ int ElementCells::part_at(const Barycentric& place) const {
     double best_depth = -std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         double depth = std::numeric_limits<double>::infinity();
-        for (const Cell::Face& face : cells_[c].faces) {
+        for (const Cell::Face& face : cell(c).faces) {
             depth = std::min(depth, face.half.side * pool_.value(face.half.plane, place));
         }
         if (depth <= best_depth) continue;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,12 @@
 #include "lancet/mesh/cut/facet.hpp"
 
 namespace lancet::mesh {
+
+/// A cell, which does not change, with its integrals once they have been asked for.
+struct SharedCell {
+    Cell shape;
+    std::optional<PartMoments> moments{};
+};
 
 /// One tetrahedron divided by cuts: convex cells, and the parts that they form. Cells that share an open area belong to
 /// one part; a facet that ends inside of the element may divide cells and yet separate nothing.
@@ -27,7 +34,8 @@ class ElementCells {
 
     int parts() const noexcept { return parts_; }
     PartMoments moments(int part) const;
-    std::span<const Cell> cells() const noexcept { return cells_; }
+    std::size_t cells() const noexcept { return cells_.size(); }
+    const Cell& cell(std::size_t number) const { return cells_[number]->shape; }
     int part_of_cell(std::size_t cell) const { return part_of_cell_[cell]; }
     const PlanePool& pool() const noexcept { return pool_; }
     /// Facets in the plane of faces of cells.
@@ -67,7 +75,7 @@ class ElementCells {
 
     PlanePool pool_;
     std::vector<bool> plane_is_cut_;
-    std::vector<Cell> cells_;
+    std::vector<std::shared_ptr<SharedCell>> cells_;
     std::vector<int> part_of_cell_;
     std::vector<Cover> covers_;
     std::vector<Facets> facets_;  ///< which the pool refers to

@@ -26,8 +26,8 @@ class Side {
     std::vector<Piece> pieces() {
         if (side_.cells == nullptr) return {{0, whole_face()}};
         std::vector<Piece> pieces;
-        for (std::size_t c = 0; c < side_.cells->cells().size(); ++c) {
-            const Cell& cell = side_.cells->cells()[c];
+        for (std::size_t c = 0; c < side_.cells->cells(); ++c) {
+            const Cell& cell = side_.cells->cell(c);
             for (std::size_t f = 0; f < cell.faces.size(); ++f) {
                 if (cell.faces[f].half.plane != side_.face) continue;
                 pieces.push_back({side_.cells->part_of_cell(c), moved(polygon(cell, f))});

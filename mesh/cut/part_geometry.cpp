@@ -64,8 +64,8 @@ class Builder {
         const PlanePool& pool = cells.pool();
         const std::vector<std::int32_t> parts = cut_.parts_of_element(element);
         std::map<std::pair<std::int32_t, int>, std::int32_t> numbers;
-        for (std::size_t c = 0; c < cells.cells().size(); ++c) {
-            const Cell& cell = cells.cells()[c];
+        for (std::size_t c = 0; c < cells.cells(); ++c) {
+            const Cell& cell = cells.cell(c);
             const std::int32_t part = parts[static_cast<std::size_t>(cells.part_of_cell(c))];
             const auto number = [&](int point) {
                 const auto [place, is_new] = numbers.try_emplace({part, point}, 0);

@@ -31,9 +31,8 @@ class PlanePool {
     int add_point(const std::array<int, 3>& planes);
 
     int planes() const noexcept { return static_cast<int>(planes_.size()); }
-    /// -1, 0 or +1: the side of the plane on which the point lies. Answers are remembered until forget_sides.
+    /// -1, 0 or +1: the side of the plane on which the point lies. Answers are remembered.
     int side(int plane, int point) const;
-    void forget_sides() { sides_.clear(); }
     /// -1, 0 or +1: the sign of the plane's value at a corner.
     int side_of_corner(int plane, int corner) const;
     /// The values of a plane's function at the corners, rounded.

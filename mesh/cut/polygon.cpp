@@ -29,17 +29,32 @@ Polygon clip(PlanePool& pool, const Polygon& polygon, const HalfSpace& half) {
     return inside;
 }
 
+namespace {
+
+/// True where one of the edges of a polygon has all of the other on its outer side. Of convex polygons in one plane
+/// that share no area, an edge of one of them separates both.
+bool is_separated_by_an_edge(const PlanePool& pool, const Polygon& polygon, const Polygon& other) {
+    return std::ranges::any_of(polygon.edges, [&](const HalfSpace& edge) {
+        return std::ranges::none_of(other.points,
+                                    [&](int point) { return edge.side * pool.side(edge.plane, point) > 0; });
+    });
+}
+
+bool lies_in(const PlanePool& pool, const Polygon& polygon, int plane) {
+    return std::ranges::all_of(polygon.points, [&](int point) { return pool.side(plane, point) == 0; });
+}
+
+}  // namespace
+
 bool are_joined(PlanePool& pool, const Polygon& a, const Polygon& b, std::span<const Cover> covers) {
-    Polygon shared = a;
-    for (const HalfSpace& edge : b.edges) {
-        shared = clip(pool, shared, edge);
-        if (shared.points.empty()) return false;
-    }
-    std::vector<Polygon> open{std::move(shared)};
+    if (is_separated_by_an_edge(pool, a, b) || is_separated_by_an_edge(pool, b, a)) return false;
+    std::vector<Polygon> open;
     for (const Cover& cover : covers) {
-        const bool lies_in_plane =
-            std::ranges::all_of(open.front().points, [&](int point) { return pool.side(cover.plane, point) == 0; });
-        if (!lies_in_plane) continue;
+        if (!lies_in(pool, a, cover.plane)) continue;
+        if (open.empty()) {
+            open.push_back(a);
+            for (const HalfSpace& edge : b.edges) open.front() = clip(pool, open.front(), edge);
+        }
         std::vector<Polygon> left;
         for (Polygon& piece : open) {
             for (const int border : cover.borders) {
