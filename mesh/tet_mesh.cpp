@@ -9,6 +9,17 @@
 
 namespace lancet::mesh {
 
+std::array<double, 4> barycentric(const std::array<Point, 4>& corners, const Point& place) {
+    const double volume = signed_volume(corners[0], corners[1], corners[2], corners[3]);
+    std::array<double, 4> weights{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        std::array<Point, 4> replaced = corners;
+        replaced[k] = place;
+        weights[k] = signed_volume(replaced[0], replaced[1], replaced[2], replaced[3]) / volume;
+    }
+    return weights;
+}
+
 double area(const Point& a, const Point& b, const Point& c) {
     const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     return std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;

@@ -19,6 +19,9 @@ using Triangle = std::array<std::int32_t, 3>;
 /// Signed volume det(b - a, c - a, d - a) / 6: positive where d lies on the side of the triangle a, b, c that its
 /// right-handed normal points to.
 double signed_volume(const Point& a, const Point& b, const Point& c, const Point& d);
+/// Barycentric coordinates of a place with respect to the corners of a tetrahedron, also outside of it. Not finite
+/// where it is flat.
+std::array<double, 4> barycentric(const std::array<Point, 4>& corners, const Point& place);
 /// The area of a triangle.
 double area(const Point& a, const Point& b, const Point& c);
 

@@ -11,19 +11,6 @@ int sign_of(double value) {
     return value < 0 ? -1 : 1;
 }
 
-/// Barycentric coordinates of a place, also outside of the tetrahedron.
-Barycentric barycentric(const CutMesh& cut, std::int32_t element, const Point& place) {
-    const auto nodes = cut.mesh().nodes();
-    const Tetrahedron& t = cut.mesh().tetrahedra()[static_cast<std::size_t>(element)];
-    Barycentric weights{};
-    for (std::size_t k = 0; k < 4; ++k) {
-        std::array<Point, 4> corners{nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]};
-        corners[k] = place;
-        weights[k] = signed_volume(corners[0], corners[1], corners[2], corners[3]) / cut.mesh().volume(element);
-    }
-    return weights;
-}
-
 }  // namespace
 
 FrontOpening::FrontOpening(const CutMesh& cut) : cut_(cut) {
@@ -105,7 +92,9 @@ FrontOpening::Guide FrontOpening::carried(const Guide& guide, std::int32_t eleme
             carried.values[k] = guide.values[static_cast<std::size_t>(shared - from.begin())];
             continue;
         }
-        const Barycentric weights = barycentric(cut_, guide.element, cut_.mesh().nodes()[to[k]]);
+        const auto nodes = cut_.mesh().nodes();
+        const Barycentric weights =
+            barycentric({nodes[from[0]], nodes[from[1]], nodes[from[2]], nodes[from[3]]}, nodes[to[k]]);
         for (std::size_t i = 0; i < 4; ++i) carried.values[k] += weights[i] * guide.values[i];
     }
     return carried;

@@ -20,19 +20,6 @@ Corners corners_of(const mesh::Tetrahedron& nodes, std::span<const Point> positi
     return corners;
 }
 
-/// Barycentric coordinates, also outside; nothing in a flat tetrahedron.
-std::optional<mesh::Barycentric> barycentric(const Corners& corners, const Point& place) {
-    const double volume = mesh::signed_volume(corners[0], corners[1], corners[2], corners[3]);
-    if (volume == 0) return std::nullopt;
-    mesh::Barycentric weights{};
-    for (std::size_t k = 0; k < 4; ++k) {
-        Corners replaced = corners;
-        replaced[k] = place;
-        weights[k] = mesh::signed_volume(replaced[0], replaced[1], replaced[2], replaced[3]) / volume;
-    }
-    return weights;
-}
-
 /// Square of the distance from the box around the corners.
 double distance_from_box(const Corners& corners, const Point& place) {
     double square = 0;
@@ -61,15 +48,15 @@ Point rest_place(const CuttableBody& body, std::span<const Point> positions, con
         const Corners corners = corners_of(mesh.parts()[part], positions);
         const double distance = distance_from_box(corners, place);
         if (distance > box_distance) continue;
-        const auto weights = barycentric(corners, place);
-        if (!weights) continue;
-        const double lowest = *std::ranges::min_element(*weights);
+        const mesh::Barycentric weights = mesh::barycentric(corners, place);
+        if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) continue;
+        const double lowest = *std::ranges::min_element(weights);
         if (distance == box_distance && lowest <= depth) continue;
         // What another part of the element holds is not this part's.
         const std::int32_t element = mesh.element_of_part()[part];
-        if (lowest >= 0 && mesh.material_point(element, *weights).part != static_cast<std::int32_t>(part)) continue;
+        if (lowest >= 0 && mesh.material_point(element, weights).part != static_cast<std::int32_t>(part)) continue;
         nearest = static_cast<std::int32_t>(part);
-        at = *weights;
+        at = weights;
         box_distance = distance;
         depth = lowest;
     }

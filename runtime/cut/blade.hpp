@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "lancet/runtime/cut/cuttable_body.hpp"
