@@ -7,9 +7,6 @@ namespace lancet::mesh {
 
 namespace {
 
-/// Outward faces of a positively oriented tetrahedron.
-constexpr std::array<Triangle, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 struct Face {
     std::int32_t middle, high;
     std::int64_t place;  // 4 * element + face
@@ -17,7 +14,7 @@ struct Face {
 
 Triangle face_nodes(const TetMesh& mesh, std::int64_t place) {
     const Tetrahedron& t = mesh.tetrahedra()[static_cast<std::size_t>(place / 4)];
-    const Triangle& face = faces[static_cast<std::size_t>(place % 4)];
+    const Triangle& face = opposite_faces[static_cast<std::size_t>(place % 4)];
     return {t[face[0]], t[face[1]], t[face[2]]};
 }
 

@@ -16,6 +16,10 @@ using Tetrahedron = std::array<std::int32_t, 4>;
 /// Node numbers of a triangle.
 using Triangle = std::array<std::int32_t, 3>;
 
+/// The corners of the face opposite each corner of a tetrahedron of positive volume, counter-clockwise as seen from
+/// outside.
+inline constexpr std::array<Triangle, 4> opposite_faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
 /// Signed volume det(b - a, c - a, d - a) / 6: positive where d lies on the side of the triangle a, b, c that its
 /// right-handed normal points to.
 double signed_volume(const Point& a, const Point& b, const Point& c, const Point& d);

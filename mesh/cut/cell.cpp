@@ -53,11 +53,10 @@ void close(Cell& piece, const HalfSpace& half, const std::map<int, int>& next_in
 Cell whole_tetrahedron(PlanePool& pool) {
     std::array<int, 4> corner{};
     for (int k = 0; k < 4; ++k) corner[k] = pool.add_point({(k + 1) % 4, (k + 2) % 4, (k + 3) % 4});
-    constexpr std::array<std::array<int, 3>, 4> opposite{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
     Cell cell;
     for (int k = 0; k < 4; ++k) {
         Cell::Face face{.half = {k, 1}};
-        for (const int point : opposite[static_cast<std::size_t>(k)]) face.points.push_back(corner[point]);
+        for (const int point : opposite_faces[static_cast<std::size_t>(k)]) face.points.push_back(corner[point]);
         cell.faces.push_back(std::move(face));
     }
     return cell;

@@ -10,9 +10,6 @@ namespace lancet::mesh {
 
 namespace {
 
-/// The corners of the face opposite each corner, counter-clockwise as seen from outside.
-constexpr std::array<std::array<std::size_t, 3>, 4> face_corners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 class Builder {
   public:
     explicit Builder(const CutMesh& cut) : cut_(cut), point_of_copy_(cut.node_of_copy().size(), -1) {}
@@ -54,7 +51,7 @@ class Builder {
         for (std::size_t k = 0; k < 4; ++k) {
             const CutMesh::FaceState state = cut_.face_state(part, static_cast<int>(k));
             if (state == CutMesh::FaceState::joined) continue;
-            const auto& [a, b, c] = face_corners[k];
+            const auto& [a, b, c] = opposite_faces[k];
             add_triangle({corners[a], corners[b], corners[c]}, part, state == CutMesh::FaceState::opened);
         }
     }

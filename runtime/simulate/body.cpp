@@ -40,7 +40,7 @@ class BodyOf final : public DeformableBody {
           element_count_(scene.mesh.tetrahedra().size()),
           numbering_(number_scene(scene, settings.ordering, settings.numbering)),
           elements_(make_elements(scene, settings, numbering_)),
-          mass_(nodal_masses(scene, element_materials(scene), numbering_, settings.mass)),
+          mass_(nodal_masses(scene, element_materials(scene), numbering_, mass_kind(settings))),
           step_(make_step(scene)),
           holds_(scene, numbering_) {
         const std::size_t numbers = 4 * static_cast<std::size_t>(numbering_.node_count);
@@ -260,7 +260,8 @@ class BodyOf final : public DeformableBody {
         const kernels::KernelSet<Real>& kernels = kernels::kernel_set<Real>(settings.instruction_set);
         const ElasticLaw law{.model = settings.model, .tangent = settings.tangent};
         return ElasticElements<Real>(
-            kernels, element_batches<Real>(scene, numbering, settings.scatter, kernels.width, settings.mass), numbering,
+            kernels, element_batches<Real>(scene, numbering, settings.scatter, kernels.width, mass_kind(settings)),
+            numbering,
             // No operator: nothing reads the gradients but products for the critical step, which are matrix-free.
             is_explicit(settings.integrator) && law.is_rotated() ? kernels::GradientLayout::batches
                                                                  : gradient_layout(settings.matrix, law),
@@ -280,7 +281,7 @@ class BodyOf final : public DeformableBody {
             elements_,
             OperatorDefinition{.tetrahedra = scene.mesh.tetrahedra(),
                                .nodal_mass = mass_,
-                               .mass = settings_.mass,
+                               .mass = mass_kind(settings_),
                                .scatter = settings_.scatter},
             settings_);
     }

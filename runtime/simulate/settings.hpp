@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "lancet/kernels/isa/instruction_set.hpp"
@@ -57,7 +58,9 @@ struct Settings {
     bool force_time_step = false;  ///< take an explicit step even if it is longer than the critical one
     ElementModel model = ElementModel::corotational;
     TangentKind tangent = TangentKind::rotated;  ///< see ElasticLaw
-    MassKind mass = MassKind::lumped;
+    /// By default row sums for implicit integrators, which keep the centre of mass of each part of a cut element, and
+    /// fractions for explicit ones, whose critical step no cut then shortens; without cuts both are the same.
+    std::optional<MassKind> mass{};
     ScalarMode scalar = ScalarMode::single_precision;
     kernels::InstructionSet instruction_set = kernels::active_instruction_set();
     OperatorKind matrix = OperatorKind::edge_blocks;
@@ -76,6 +79,11 @@ struct Settings {
     mesh::OrderingKind ordering = mesh::OrderingKind::hilbert;
     kernels::NumberingOptions numbering{};
 };
+
+/// The kind of mass that settings come to.
+constexpr MassKind mass_kind(const Settings& settings) noexcept {
+    return settings.mass.value_or(is_explicit(settings.integrator) ? MassKind::fraction : MassKind::lumped);
+}
 
 /// Throws lancet::Error for settings that make no sense or contradict each other.
 void validate(const Settings& settings);

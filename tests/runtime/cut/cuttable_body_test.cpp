@@ -293,6 +293,15 @@ TEST(CuttableBody, NoCutShortensTheCriticalStepOfTheElementsUnderFractionLumping
     }
 }
 
+TEST(CuttableBody, TheMassFollowsTheIntegratorByDefault) {
+    Settings settings;
+    EXPECT_EQ(mass_kind(settings), runtime::MassKind::lumped);
+    settings.integrator = runtime::Integrator::symplectic_euler;
+    EXPECT_EQ(mass_kind(settings), runtime::MassKind::fraction);
+    settings.mass = runtime::MassKind::lumped;
+    EXPECT_EQ(mass_kind(settings), runtime::MassKind::lumped);
+}
+
 TEST(CuttableBody, HoldsAreOfAllCopiesAndOutliveACut) {
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
     CuttableBody body(bar(true), precise(), *scheduler);
