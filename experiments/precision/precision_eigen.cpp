@@ -29,7 +29,8 @@ struct Options {
 
 template <class Scalar>
 bar::WorkerReport find_rest(const bar::Problem& problem, const Options& options, bar::Snapshots& snapshots) {
-    bar::WorkerReport report;
+    bar::WorkerReport report = bar::baseline_report("eigen", "csr", options.scalar, options.threads, problem);
+    report.steps = 1;
     Eigen::setNbThreads(options.threads);
     const PeakMemory memory;
     const double begin = runtime::steady_seconds();
@@ -71,17 +72,8 @@ ExitCode body(int argc, const char* const* argv) {
     const bar::Problem problem = bar::make_problem(problem_options);
     bar::Snapshots snapshots(snapshot_options, problem);
     const bool is_float = options.scalar == "float";
-    bar::WorkerReport report =
+    const bar::WorkerReport report =
         is_float ? find_rest<float>(problem, options, snapshots) : find_rest<double>(problem, options, snapshots);
-    report.method = "eigen";
-    report.operator_ = "csr";
-    report.scalar = options.scalar;
-    report.isa = "native";
-    report.scheduler = options.threads == 1 ? "serial" : "openmp";
-    report.threads = options.threads;
-    report.elements = static_cast<std::int64_t>(problem.mesh.tetrahedra().size());
-    report.nodes = static_cast<std::int64_t>(problem.mesh.nodes().size());
-    report.steps = 1;
     snapshots.write();
     std::cout << bar::to_line(report) << std::endl;
     return ExitCode::success;
