@@ -164,6 +164,8 @@ void print(const Findings& findings, const std::vector<Advice>& advice) {
            "Errors are against the references and published values below: displacements in the L2 norm, stresses in "
            "the energy norm, "
            "and the quantity of interest.\n"
+           "In dynamics they are those of time stepping alone: the reference is on the same mesh. What the mesh costs "
+           "stands below.\n"
            "Extrapolated displacements are those of the coarser of two meshes: better at its nodes, not between "
            "them. The baseline has none, though it could.\n\n";
     std::cout << "For an error of so much use\n";
