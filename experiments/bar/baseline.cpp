@@ -53,7 +53,8 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options, const Baselin
 
 WorkerReport simulate(const Problem& problem, const BaselineOptions& options, const BaselineProgram& program,
                       Snapshots& snapshots) {
-    WorkerReport report;
+    WorkerReport report = baseline_report(program.method, program.operator_, options.scalar, options.threads, problem);
+    report.variant = options.preconditioner;
     const double begin = runtime::steady_seconds();
     const auto make = options.scalar == "float" ? program.make_float : program.make_double;
     const std::unique_ptr<BaselineSolver> solver = make(problem, options);
@@ -97,17 +98,7 @@ int run_baseline(int argc, const char* const* argv, const BaselineProgram& progr
 
         const Problem problem = make_problem(problem_options);
         Snapshots snapshots(snapshot_options, problem);
-        WorkerReport report = simulate(problem, options, program, snapshots);
-        report.method = program.method;
-        report.variant = options.preconditioner;
-        report.operator_ = program.operator_;
-        report.scalar = options.scalar;
-        report.isa = "native";
-        report.scheduler = options.threads == 1 ? "serial" : "openmp";
-        report.threads = options.threads;
-        report.elements = static_cast<std::int64_t>(problem.mesh.tetrahedra().size());
-        report.nodes = static_cast<std::int64_t>(problem.mesh.nodes().size());
-        report.steps = problem.steps;
+        const WorkerReport report = simulate(problem, options, program, snapshots);
         snapshots.write();
         std::cout << to_line(report) << std::endl;
         return ExitCode::success;

@@ -68,6 +68,21 @@ void get(const nlohmann::json& json, auto& value) {
 
 }  // namespace
 
+WorkerReport baseline_report(const std::string& method, const std::string& operator_name, const std::string& scalar,
+                             int threads, const Problem& problem) {
+    WorkerReport report;
+    report.method = method;
+    report.operator_ = operator_name;
+    report.scalar = scalar;
+    report.isa = "native";
+    report.scheduler = threads == 1 ? "serial" : "openmp";
+    report.threads = threads;
+    report.elements = static_cast<std::int64_t>(problem.mesh.tetrahedra().size());
+    report.nodes = static_cast<std::int64_t>(problem.mesh.nodes().size());
+    report.steps = problem.steps;
+    return report;
+}
+
 std::string to_line(const WorkerReport& report) {
     nlohmann::ordered_json json;
     visit_fields(report, [&json](const char* name, const auto& value) { put(json, name, value); });

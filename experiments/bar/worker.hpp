@@ -38,6 +38,11 @@ struct WorkerReport {
     double energy_final = 0;         ///< J, see energy()
 };
 
+/// The report of a baseline, compiled for this machine, before it runs on a problem: scheduler "serial" on one thread
+/// and "openmp" on more, no variant, and the problem's number of steps.
+[[nodiscard]] WorkerReport baseline_report(const std::string& method, const std::string& operator_name,
+                                           const std::string& scalar, int threads, const Problem& problem);
+
 /// One line of JSON without a line end.
 [[nodiscard]] std::string to_line(const WorkerReport& report);
 

@@ -11,7 +11,7 @@ namespace lancet::experiments::precision {
 /// What the user asked to vary, and where things are.
 struct Choice {
     bool quick = false;
-    double longest_seconds = 120;  ///< a run in time that takes longer is given up
+    double longest_seconds = 120;  ///< of the processor: a run that takes longer is given up
     std::vector<std::string> scalars{"float", "mixed", "double"};
     std::vector<int> threads{1};
     std::vector<std::string> schedulers{"serial"};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,12 +26,15 @@ struct EigenStaticsOptions {
     std::string preconditioner = "diagonal";  ///< diagonal, incomplete-cholesky, or ldlt: the direct solver
     double tolerance = 1e-6;                  ///< of the residual, relative to the load
     std::array<double, 3> end_load{};         ///< N, spread over the face of largest x
+    double longest_seconds = HUGE_VAL;        ///< of the processor: no Newton iteration begins later
+    int threads = 1;                          ///< that share this time
 };
 
 /// How it went.
 struct EigenStaticsReport {
     bool converged = false;
-    double residual = 0;  ///< relative to the load
+    bool gave_up = false;  ///< for it took too long
+    double residual = 0;   ///< relative to the load
     std::int64_t iterations = 0;
     int newton_iterations = 0;
     double flops = 0;  ///< of the linear solves: products and vectors, or the factorisation
@@ -39,7 +43,7 @@ struct EigenStaticsReport {
 /// Static equilibrium as a competent user of Eigen finds it: the tangent in a row-major Eigen::SparseMatrix, its
 /// pattern computed once and its values written in place; Newton's method with a line search on the potential energy;
 /// Eigen::ConjugateGradient with one of Eigen's preconditioners, to a hundredth in each Newton step of the corotational
-/// model, or Eigen::SimplicialLDLT.
+/// model, or Eigen::SimplicialLDLT. The linear model's matrix is assembled and factorised once.
 template <class Scalar>
 class EigenStatics {
   public:
@@ -75,12 +79,19 @@ class EigenStatics {
         Values u = Values::Zero(unknowns_);
         const double load = load_.template cast<double>().norm();
         double energy = evaluate(u);
+        const std::clock_t start = std::clock();
         while (true) {
             const double norm = residual_.template cast<double>().norm();
             report.residual = norm / load;
             report.converged = norm <= options_.tolerance * load;
             if (report.converged || report.newton_iterations == most_newton_iterations) break;
-            assemble();
+            const double busy = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / options_.threads;
+            report.gave_up = busy > options_.longest_seconds;
+            if (report.gave_up) break;
+            if (options_.corotational || report.newton_iterations == 0) {
+                assemble();
+                factorise(report);
+            }
             const double enough = options_.tolerance * load / norm;
             const Values d = solve_linear(options_.corotational ? std::max(1e-2, 0.5 * enough) : 0.5 * enough, report);
             ++report.newton_iterations;
@@ -248,18 +259,28 @@ class EigenStatics {
         }
     }
 
+    void factorise(EigenStaticsReport& report) {
+        std::visit([this](auto& solver) { solver.factorize(matrix_); }, solver_);
+        const auto* direct = std::get_if<Direct>(&solver_);
+        if (direct == nullptr) return;
+        // Of an LDL^T: the squares of the lengths of L's columns.
+        for (int column = 0; column < unknowns_; ++column)
+            report.flops += length(*direct, column) * length(*direct, column);
+    }
+
+    /// Of a column of L.
+    static double length(const Direct& solver, int column) {
+        const auto& factor = solver.matrixL().nestedExpression();
+        return factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column];
+    }
+
     Values solve_linear(double tolerance, EigenStaticsReport& report) {
         const auto entries = static_cast<double>(matrix_.nonZeros());
         return std::visit(
             [&](auto& solver) -> Values {
-                solver.factorize(matrix_);
                 if constexpr (std::is_same_v<std::decay_t<decltype(solver)>, Direct>) {
-                    // Of an LDL^T: the squares of the lengths of L's columns; two products with L for the solution.
-                    const auto& factor = solver.matrixL().nestedExpression();
-                    for (int column = 0; column < unknowns_; ++column) {
-                        const double length = factor.outerIndexPtr()[column + 1] - factor.outerIndexPtr()[column];
-                        report.flops += length * length + 4 * length;
-                    }
+                    // Two products with L.
+                    for (int column = 0; column < unknowns_; ++column) report.flops += 4 * length(solver, column);
                     ++report.iterations;
                     return solver.solve(residual_);
                 } else {

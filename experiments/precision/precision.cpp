@@ -159,6 +159,15 @@ void print(const Findings& findings, const std::vector<Advice>& advice) {
         make_printed_table(part).print(std::cout);
         std::cout << '\n';
     });
+    std::cout
+        << "Times are medians; range: slowest less fastest run, in percent of the median, missing for a single run.\n"
+           "Errors are against the references and published values below: displacements in the L2 norm, stresses in "
+           "the energy norm, "
+           "and the quantity of interest.\n"
+           "In dynamics they are those of time stepping alone: the reference is on the same mesh. What the mesh costs "
+           "stands below.\n"
+           "Extrapolated displacements are those of the coarser of two meshes: better at its nodes, not between "
+           "them. The baseline has none, though it could.\n\n";
     std::cout << "For an error of so much use\n";
     make_advice_table(advice, rows).print(std::cout);
     std::cout << "\nWhat the error is made of (L2 norm)\n";

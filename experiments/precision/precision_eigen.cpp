@@ -29,7 +29,8 @@ struct Options {
 
 template <class Scalar>
 bar::WorkerReport find_rest(const bar::Problem& problem, const Options& options, bar::Snapshots& snapshots) {
-    bar::WorkerReport report;
+    bar::WorkerReport report = bar::baseline_report("eigen", "csr", options.scalar, options.threads, problem);
+    report.steps = 1;
     Eigen::setNbThreads(options.threads);
     const PeakMemory memory;
     const double begin = runtime::steady_seconds();
@@ -40,10 +41,11 @@ bar::WorkerReport find_rest(const bar::Problem& problem, const Options& options,
     report.bytes = memory.bytes().value_or(0);
     report.cg_iterations_total = found.iterations;
     report.solve_flops = found.flops;
-    report.variant = found.converged
-                         ? "converged"
-                         : "stagnated: the residual stays at " + format_number(found.residual, 3) +
-                               " of the loads after " + std::to_string(found.newton_iterations) + " Newton iterations";
+    const std::string iterations = std::to_string(found.newton_iterations) + " Newton iterations";
+    report.variant = found.converged ? "converged"
+                     : found.gave_up ? "too slow: given up after " + iterations
+                                     : "stagnated: the residual stays at " + format_number(found.residual, 3) +
+                                           " of the loads after " + iterations;
     if (snapshots.wanted(1)) snapshots.add(statics.positions());
     return report;
 }
@@ -62,26 +64,21 @@ ExitCode body(int argc, const char* const* argv) {
     app.add_option("--tolerance", options.statics.tolerance, "Of the residual, relative to the load")
         ->check(CLI::Range(1e-14, 1.0));
     app.add_option("--threads", options.threads, "OpenMP threads of the products")->check(CLI::Range(1, 1024));
+    app.add_option("--limit", options.statics.longest_seconds,
+                   "Begin no Newton iteration after so many seconds of processor time")
+        ->check(CLI::PositiveNumber);
     app.add_option("--end-load", options.statics.end_load, "Force in N on the face of largest x")->delimiter(',');
     bar::add_snapshot_options(app, snapshot_options);
     bar::add_problem_options(app, problem_options);
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
     options.statics.corotational = options.model == "corotational";
+    options.statics.threads = options.threads;
 
     const bar::Problem problem = bar::make_problem(problem_options);
     bar::Snapshots snapshots(snapshot_options, problem);
     const bool is_float = options.scalar == "float";
-    bar::WorkerReport report =
+    const bar::WorkerReport report =
         is_float ? find_rest<float>(problem, options, snapshots) : find_rest<double>(problem, options, snapshots);
-    report.method = "eigen";
-    report.operator_ = "csr";
-    report.scalar = options.scalar;
-    report.isa = "native";
-    report.scheduler = options.threads == 1 ? "serial" : "openmp";
-    report.threads = options.threads;
-    report.elements = static_cast<std::int64_t>(problem.mesh.tetrahedra().size());
-    report.nodes = static_cast<std::int64_t>(problem.mesh.nodes().size());
-    report.steps = 1;
     snapshots.write();
     std::cout << bar::to_line(report) << std::endl;
     return ExitCode::success;

@@ -32,6 +32,11 @@ std::vector<std::size_t> by_time(std::span<const Row> rows) {
     return order;
 }
 
+/// Slowest less fastest run against the median; missing for a single run.
+Cell range_percent(const Row& row) {
+    return row.repetitions > 1 ? Cell(100 * (row.seconds_maximum - row.seconds_minimum) / row.seconds) : Cell();
+}
+
 bool any(std::span<const Row> rows, const auto& has) {
     return std::any_of(rows.begin(), rows.end(), has);
 }
@@ -137,6 +142,7 @@ Table make_printed_table(std::span<const Row> rows) {
                  {"dt", "dt", "s", 3, moves},
                  {"tolerance", "tolerance", "", 1},
                  {"seconds", "time", "s"},
+                 {"spread", "range", "%", 2},
                  {"iterations", "CG its"},
                  {"megabytes", "memory", "MB"},
                  {"error_l2", "error L2", "%"},
@@ -159,7 +165,7 @@ Table make_printed_table(std::span<const Row> rows) {
         table.add_row(
             {std::string(row.pareto ? "*" : ""), s.method, s.scalar, word(s.operator_), word(s.preconditioner),
              word(s.integrator), word(other), std::int64_t{s.threads}, s.instruction_set, cells_text(s.cells),
-             positive(s.time_step), positive(s.tolerance), row.seconds, row.solution.iterations,
+             positive(s.time_step), positive(s.tolerance), row.seconds, range_percent(row), row.solution.iterations,
              row.solution.bytes ? Cell(static_cast<double>(*row.solution.bytes) / 1e6) : Cell(),
              optional_cell(row.errors.l2), optional_cell(row.errors.energy), optional_cell(row.errors.quantity)});
     }

@@ -134,6 +134,7 @@ bar::Job eigen_job(const StaticProblem& problem, const Setting& setting, const C
                      "--preconditioner=" + setting.preconditioner,
                      "--tolerance=" + format_number(setting.tolerance, 3),
                      "--threads=" + std::to_string(setting.threads),
+                     "--limit=" + format_number(choice.longest_seconds, 6),
                      "--end-load=" + format_number(problem.end_load[0], 12) + "," +
                          format_number(problem.end_load[1], 12) + "," + format_number(problem.end_load[2], 12)};
     return job;
@@ -148,6 +149,9 @@ Solution run_eigen(const StaticProblem& problem, int level, const Setting& setti
     std::vector<std::vector<double>> snapshots;
     const bar::WorkerReport report =
         bar::run_worker(eigen_job(problem, setting, choice), options, {1.0}, nodes, snapshots);
+    if (report.variant.starts_with("too slow")) {
+        throw RunFailed("too slow", report.variant + " and " + format_number(report.seconds_total, 3) + " s");
+    }
     Solution solution;
     solution.seconds = report.seconds_total;
     solution.flops = report.solve_flops;

@@ -58,6 +58,14 @@ LANCET_INLINE Vector3<P> multiply(const Matrix3<P>& a, const Vector3<P>& v) {
             fma(a.entry[2][2], v.z, fma(a.entry[2][1], v.y, a.entry[2][0] * v.x))};
 }
 
+/// a^T v.
+template <class P>
+LANCET_INLINE Vector3<P> multiply_transposed(const Matrix3<P>& a, const Vector3<P>& v) {
+    return {fma(a.entry[2][0], v.z, fma(a.entry[1][0], v.y, a.entry[0][0] * v.x)),
+            fma(a.entry[2][1], v.z, fma(a.entry[1][1], v.y, a.entry[0][1] * v.x)),
+            fma(a.entry[2][2], v.z, fma(a.entry[1][2], v.y, a.entry[0][2] * v.x))};
+}
+
 /// Adds (or, where each slot is written once, stores) the values of corners 1, 2, 3 and minus their sum at corner 0.
 template <class P>
 LANCET_INLINE void scatter(typename P::Real* buffer, const std::int32_t* targets, const Corners<P>& f,

@@ -12,13 +12,6 @@ LANCET_INLINE Matrix3<P> load_element_block(const typename P::Real* blocks, std:
     return load_matrix<P>(blocks + (batch * element_block_entries + 9 * element_block_index(i, j)) * P::width);
 }
 
-template <class P>
-LANCET_INLINE Vector3<P> multiply_transposed(const Matrix3<P>& a, const Vector3<P>& v) {
-    return {fma(a.entry[2][0], v.z, fma(a.entry[1][0], v.y, a.entry[0][0] * v.x)),
-            fma(a.entry[2][1], v.z, fma(a.entry[1][1], v.y, a.entry[0][1] * v.x)),
-            fma(a.entry[2][2], v.z, fma(a.entry[1][2], v.y, a.entry[0][2] * v.x))};
-}
-
 /// K d of a batch of elements on corners 1, 2, 3, from the differences d of their displacements to corner 0: on corner
 /// i, K_ij (d_j - d_i) summed over the edges. Corner 0 takes minus their sum, for so do the rows of K.
 template <class P>

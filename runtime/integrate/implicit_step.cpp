@@ -30,19 +30,22 @@ ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, co
     : elements_(&elements),
       numbering_(&elements.numbering()),
       settings_(settings),
-      mass_(definition.nodal_mass),
-      consistent_mass_(definition.mass == MassKind::consistent
-                           ? ConsistentMass(elements.batches(), definition.tetrahedra, elements.numbering())
-                           : ConsistentMass()),
+      inertia_{.row_sums = definition.nodal_mass,
+               .consistent = definition.mass == MassKind::consistent
+                                 ? ConsistentMass(elements.batches(), definition.tetrahedra, elements.numbering())
+                                 : ConsistentMass()},
+      energy_(elements, inertia_),
       matrix_(make_operator(settings.matrix, elements, definition)),
       preconditioner_(std::make_unique<Preconditioner<Real>>(settings.preconditioner, elements, *matrix_, definition,
                                                              settings.coarse_change)),
       conjugate_gradients_(elements.kernels(), elements.numbering()),
-      start_position_(mass_.size() * 4),
-      start_velocity_(mass_.size() * 4),
-      trial_velocity_(mass_.size() * 4),
-      right_hand_side_(mass_.size() * 4),
-      change_(mass_.size() * 4),
+      old_position_(is_newmark() ? inertia_.row_sums.size() * 4 : 0),
+      start_position_(inertia_.row_sums.size() * 4),
+      start_velocity_(inertia_.row_sums.size() * 4),
+      trial_velocity_(inertia_.row_sums.size() * 4),
+      held_impulse_(inertia_.consistent.empty() ? 0 : inertia_.row_sums.size() * 4),
+      right_hand_side_(inertia_.row_sums.size() * 4),
+      change_(inertia_.row_sums.size() * 4),
       partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
 
 template <class Real, class Accumulate>
@@ -66,34 +69,11 @@ double ImplicitStep<Real, Accumulate>::sum_over_nodes(Scheduler& scheduler, cons
 }
 
 template <class Real, class Accumulate>
-template <class Value>
-double ImplicitStep<Real, Accumulate>::inertia(std::size_t node, const Value& value) const {
-    const double lumped = mass_[node] * value(node);
-    return consistent_mass_.empty() ? lumped : lumped + consistent_mass_.off_diagonal(node, value);
-}
-
-template <class Real, class Accumulate>
-double ImplicitStep<Real, Accumulate>::kinetic_energy(Scheduler& scheduler, std::span<const double> velocity) {
-    return sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
-        double sum = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto component = [&](std::size_t j) { return velocity[4 * j + axis]; };
-            sum += 0.5 * velocity[at + axis] * inertia(node, component);
-        }
-        return sum;
-    });
-}
-
-template <class Real, class Accumulate>
-double ImplicitStep<Real, Accumulate>::elastic_energy(Scheduler& scheduler, const double* position) {
-    return elements_->evaluate(scheduler, position,
-                               {.rotation = !is_linear(), .force = false, .energy = true, .keep_gradients = false});
-}
-
-template <class Real, class Accumulate>
-bool ImplicitStep<Real, Accumulate>::is_finite(Scheduler& scheduler, std::span<const double> nodal) {
+bool ImplicitStep<Real, Accumulate>::is_finite(Scheduler& scheduler, const BodyMotion& motion) {
     return std::isfinite(sum_over_nodes(scheduler, [&](std::size_t, std::size_t at) {
-        return std::abs(nodal[at]) + std::abs(nodal[at + 1]) + std::abs(nodal[at + 2]);
+        double sum = 0;
+        for (std::size_t i = at; i < at + 3; ++i) sum += std::abs(motion.position[i]) + std::abs(motion.velocity[i]);
+        return sum;
     }));
 }
 
@@ -174,14 +154,16 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
         const Real* product = matrix_->buffer();
         for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
             const auto at = static_cast<std::size_t>(node);
-            const double mass = mass_[at];
+            const double mass = inertia_.row_sums[at];
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const std::size_t i = 4 * at + axis;
-                const double change = inertia(
+                const double change = inertia_.momentum(
                     at, [&](std::size_t j) { return motion.velocity[4 * j + axis] - start_velocity_[4 * j + axis]; });
-                const double momentum = inertia(at, [&](std::size_t j) { return motion.velocity[4 * j + axis]; });
+                const double momentum =
+                    inertia_.momentum(at, [&](std::size_t j) { return motion.velocity[4 * j + axis]; });
                 double b =
                     g * (static_cast<double>(force[i]) + mass * load[axis] + loads.nodal[i]) - change - drag * momentum;
+                if (has_held_impulse_) b += held_impulse_[i];
                 if (needs_product) {
                     b -= stiffness_share * (static_cast<double>(product[i]) - product_mass * momentum);
                 }
@@ -218,14 +200,14 @@ ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& schedul
 }
 
 template <class Real, class Accumulate>
-void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+bool ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                                      const ConstraintFilter& filter, StepReport& report,
                                                      StepTotals& totals) {
     Timer timer;
     const bool renew = steps_since_renewal_ == 0;
     linearise(scheduler, motion.position.data(), loads, renew);
     timer.add_to(totals.seconds_forces);
-    right_hand_side(scheduler, motion, loads, filter, {.at_state = true, .falls_free = true});
+    const Residual residual = right_hand_side(scheduler, motion, loads, filter, {.at_state = true, .falls_free = true});
     timer.add_to(totals.seconds_rest);
     solve(scheduler, motion, filter, report);
     timer.add_to(totals.seconds_solve);
@@ -233,13 +215,15 @@ void ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyM
     move(scheduler, motion, position_length(), motion.velocity);
     report.newton_iterations = 1;
     timer.add_to(totals.seconds_rest);
+    return std::isfinite(residual.squared_norm);
 }
 
 template <class Real, class Accumulate>
-void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+bool ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                             const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
     const double c = position_length();
     double reference = 0, potential = 0;
+    bool is_finite = true;
     // A line search needs the potential of all forces, which stiffness-proportional damping and the average stress of
     // a step do not have.
     const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0 && !takes_average_stress();
@@ -251,11 +235,12 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
         timer.add_to(totals.seconds_forces);
         const Residual residual =
             right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = iteration == 0});
+        is_finite = is_finite && std::isfinite(residual.squared_norm);
         if (iteration == 0) {
             const double load = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
                 double square = 0;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const double force = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
+                    const double force = inertia_.row_sums[node] * loads.gravity[axis] + loads.nodal[at + axis];
                     square += force * force;
                 }
                 return square;
@@ -285,69 +270,24 @@ void ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& mo
     Timer timer;
     move(scheduler, motion, c, motion.velocity);
     timer.add_to(totals.seconds_rest);
+    return is_finite;
 }
 
 template <class Real, class Accumulate>
-double ImplicitStep<Real, Accumulate>::growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
-                                              std::span<const double> before_hold) {
-    const double h = settings_.time_step;
-    const bool has_holds = !before_hold.empty();
-    const double elastic =
-        has_holds
-            ? elements_->evaluate(scheduler, motion.position.data(),
-                                  {.rotation = !is_linear(), .force = true, .energy = true, .keep_gradients = false})
-            : elastic_energy(scheduler, motion.position.data());
-    const double kinetic = kinetic_energy(scheduler, motion.velocity);
-    if (has_holds) {
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) { elements_->merge_force(block); });
-    }
-    const double work = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
-        double sum = 0;
-        bool is_held = false;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double moved = motion.position[at + axis] - start_position_[at + axis];
-            const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
-            sum += load * moved;
-            is_held = is_held || (has_holds && before_hold[at + axis] != start_velocity_[at + axis]);
-        }
-        if (!has_holds) return sum;
-        // The hold adds whatever the node's motion needs beyond inertia, loads and elastic force.
-        for (std::size_t axis = 0; axis < 3 && is_held; ++axis) {
-            const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
-            const double gained =
-                inertia(node, [&](std::size_t j) { return motion.velocity[4 * j + axis] - before_hold[4 * j + axis]; });
-            const double reaction = gained / h - load - static_cast<double>(elements_->force()[at + axis]);
-            sum += reaction * (motion.position[at + axis] - start_position_[at + axis]);
-        }
-        return sum;
-    });
-    const double before = kinetic_ + elastic_, after = kinetic + elastic;
-    kinetic_ = kinetic;
-    elastic_ = elastic;
-    // Rounding of the energies: a sum of positive terms in Real.
-    const double rounding = 64 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * (before + after);
-    const double excess = after - before - work - rounding;
-    return std::isfinite(after) ? excess : HUGE_VAL;
+typename StepEnergy<Real>::Step ImplicitStep<Real, Accumulate>::step_under(const BodyLoads& loads) const noexcept {
+    return {.position = start_position_,
+            .velocity = start_velocity_,
+            .impulse = has_held_impulse_ ? std::span<const double>(held_impulse_) : std::span<const double>(),
+            .position_length = position_length(),
+            .momentum_length = momentum_length(),
+            .loads = &loads};
 }
 
 template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::incremental_potential(Scheduler& scheduler, BodyMotion& motion,
                                                              std::span<const double> velocity, const BodyLoads& loads) {
-    const double g = momentum_length(), c = position_length();
-    move(scheduler, motion, c, velocity);
-    const double elastic = elastic_energy(scheduler, motion.position.data());
-    return g / c * elastic + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
-               double sum = 0;
-               for (std::size_t axis = 0; axis < 3; ++axis) {
-                   const double v = velocity[at + axis], change = v - start_velocity_[at + axis];
-                   const double load = mass_[node] * loads.gravity[axis] + loads.nodal[at + axis];
-                   const double momentum = inertia(node, [&](std::size_t j) { return velocity[4 * j + axis]; });
-                   const double gained = inertia(
-                       node, [&](std::size_t j) { return velocity[4 * j + axis] - start_velocity_[4 * j + axis]; });
-                   sum += 0.5 * (change * gained + g * loads.rayleigh_mass * v * momentum) - g * load * v;
-               }
-               return sum;
-           });
+    move(scheduler, motion, position_length(), velocity);
+    return energy_.incremental_potential(scheduler, step_under(loads), motion.position, velocity);
 }
 
 template <class Real, class Accumulate>
@@ -384,8 +324,12 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
                                                const ConstraintFilter& filter, std::span<const double> before_hold,
                                                StepReport& report, StepTotals& totals) {
     Timer timer;
-    const double kinetic = kinetic_, elastic = elastic_;
-    bool gained = growth(scheduler, motion, loads, before_hold) > 0;
+    const typename StepEnergy<Real>::Inner before = inner_energy_;
+    const auto gains = [&] {
+        inner_energy_ = before;
+        return energy_.growth(scheduler, step_under(loads), motion, before_hold, inner_energy_) > 0;
+    };
+    bool gained = gains();
     timer.add_to(totals.seconds_forces);
     if (!gained) return;
 
@@ -408,32 +352,22 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
         const bool decreased = descend(scheduler, motion, loads, potential, 0);
         if (!decreased) break;
         move(scheduler, motion, h, motion.velocity);
-        kinetic_ = kinetic;
-        elastic_ = elastic;
-        gained = growth(scheduler, motion, loads, before_hold) > 0;
+        gained = gains();
         timer.add_to(totals.seconds_forces);
     }
     // The iterations may end before they have brought the energy down. A slower motion from the same start has less of
     // it, and in the limit of none what the body had at the start.
     constexpr int attempts = 24;  // 0.75^24 is 1e-3
-    if (gained && is_finite(scheduler, motion.velocity)) {
+    if (gained && is_finite(scheduler, motion)) {
         for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
             slow_down(scheduler, motion, filter, attempt < attempts ? 0.75 : 0.0);
             move(scheduler, motion, h, motion.velocity);
-            kinetic_ = kinetic;
-            elastic_ = elastic;
-            gained = growth(scheduler, motion, loads, before_hold) > 0;
+            gained = gains();
         }
         timer.add_to(totals.seconds_forces);
     }
     move(scheduler, motion, h, motion.velocity);
     matrix_is_known_ = false;
-    if (is_finite(scheduler, motion.velocity) && is_finite(scheduler, motion.position)) return;
-    // Nothing finite was found: the body stops where it was.
-    report.lost = true;
-    motion.position = start_position_;
-    std::fill(motion.velocity.begin(), motion.velocity.end(), 0.0);
-    forget();
 }
 
 template <class Real, class Accumulate>
@@ -450,16 +384,17 @@ void ImplicitStep<Real, Accumulate>::find_acceleration(Scheduler& scheduler, Bod
             for (std::size_t i = 4 * at; i < 4 * at + 3; ++i) {
                 const double force = static_cast<double>(right_hand_side_[i]) / g;
                 start_position_[i] = force;
-                motion.acceleration[i] = mass_[at] > 0 ? force / mass_[at] : 0.0;
+                const double mass = inertia_.row_sums[at];
+                motion.acceleration[i] = mass > 0 ? force / mass : 0.0;
             }
         }
     });
-    if (!consistent_mass_.empty()) {
-        consistent_mass_.solve(mass_, *numbering_, filter,
-                               {.residual = start_position_,
-                                .direction = start_velocity_,
-                                .product = trial_velocity_,
-                                .solution = motion.acceleration});
+    if (!inertia_.consistent.empty()) {
+        inertia_.consistent.solve(inertia_.row_sums, *numbering_, filter,
+                                  {.residual = start_position_,
+                                   .direction = start_velocity_,
+                                   .product = trial_velocity_,
+                                   .solution = motion.acceleration});
     }
     acceleration_is_known_ = true;
 }
@@ -490,18 +425,48 @@ void ImplicitStep<Real, Accumulate>::end_newmark(Scheduler& scheduler, BodyMotio
 }
 
 template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::find_held_impulse(Scheduler& scheduler, const BodyMotion& motion,
+                                                       std::span<const double> before_hold) {
+    has_held_impulse_ = !inertia_.consistent.empty() && !before_hold.empty();
+    if (!has_held_impulse_) return;
+    const double share = momentum_length() / settings_.time_step;
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+            const auto at = static_cast<std::size_t>(node);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto jump = [&](std::size_t j) {
+                    return motion.velocity[4 * j + axis] - before_hold[4 * j + axis];
+                };
+                held_impulse_[4 * at + axis] = -share * inertia_.momentum(at, jump);
+            }
+        }
+    });
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::stop(BodyMotion& motion) noexcept {
+    std::copy_n((is_newmark() ? old_position_ : start_position_).begin(), motion.position.size(),
+                motion.position.begin());
+    std::fill(motion.velocity.begin(), motion.velocity.end(), 0.0);
+    std::fill(motion.acceleration.begin(), motion.acceleration.end(), 0.0);
+    forget();
+}
+
+template <class Real, class Accumulate>
 StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                                                    const ConstraintFilter& filter, std::span<const double> before_hold,
                                                    StepTotals& totals) {
     StepReport report;
     Timer timer;
     if (settings_.energy_safeguard && !energy_is_known_) {
-        kinetic_ =
-            kinetic_energy(scheduler, before_hold.empty() ? std::span<const double>(motion.velocity) : before_hold);
-        elastic_ = elastic_energy(scheduler, motion.position.data());
+        inner_energy_ = {.kinetic = energy_.kinetic(
+                             scheduler, before_hold.empty() ? std::span<const double>(motion.velocity) : before_hold),
+                         .elastic = energy_.elastic(scheduler, motion.position.data())};
         energy_is_known_ = true;
         timer.add_to(totals.seconds_forces);
     }
+    find_held_impulse(scheduler, motion, before_hold);
+    if (is_newmark()) old_position_ = motion.position;
     if (is_newmark() && !acceleration_is_known_) {
         find_acceleration(scheduler, motion, loads, filter);
         timer.add_to(totals.seconds_forces);
@@ -510,11 +475,9 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     start_velocity_ = motion.velocity;
     if (is_newmark()) begin_newmark(scheduler, motion);
     timer.add_to(totals.seconds_rest);
-    if (settings_.linearisation == Linearisation::state) {
-        step_from_state(scheduler, motion, loads, filter, report, totals);
-    } else {
-        newton(scheduler, motion, loads, filter, report, totals);
-    }
+    const bool from_state = settings_.linearisation == Linearisation::state;
+    const bool equations_are_finite = from_state ? step_from_state(scheduler, motion, loads, filter, report, totals)
+                                                 : newton(scheduler, motion, loads, filter, report, totals);
     if (settings_.energy_safeguard) {
         safeguard(scheduler, motion, loads, filter, before_hold, report, totals);
     }
@@ -530,6 +493,13 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
         Timer rest;
         end_newmark(scheduler, motion);
         rest.add_to(totals.seconds_rest);
+    }
+    // Where the safeguard has found no growth, energies and with them the state are finite. Without it a step whose
+    // equations are not has gone on as if there were no forces.
+    const bool is_guarded = settings_.energy_safeguard;
+    if (((!is_guarded || report.repeated) && !is_finite(scheduler, motion)) || !(is_guarded || equations_are_finite)) {
+        stop(motion);
+        report.lost = true;
     }
     steps_since_renewal_ = (steps_since_renewal_ + 1) % settings_.rotation_interval;
 
@@ -547,10 +517,10 @@ template <class Real, class Accumulate>
 Energies ImplicitStep<Real, Accumulate>::energies(Scheduler& scheduler, const BodyMotion& motion,
                                                   const BodyLoads& loads, std::span<const double> rest_position) {
     Energies energies;
-    energies.kinetic = kinetic_energy(scheduler, motion.velocity);
-    energies.elastic = elastic_energy(scheduler, motion.position.data());
-    energies.gravity = gravity_energy(scheduler, *numbering_, std::span<double>(partial_), mass_, loads.gravity,
-                                      motion.position, rest_position);
+    energies.kinetic = energy_.kinetic(scheduler, motion.velocity);
+    energies.elastic = energy_.elastic(scheduler, motion.position.data());
+    energies.gravity = gravity_energy(scheduler, *numbering_, std::span<double>(partial_), inertia_.row_sums,
+                                      loads.gravity, motion.position, rest_position);
     return energies;
 }
 
@@ -570,7 +540,7 @@ LargestEigenvalue ImplicitStep<Real, Accumulate>::largest_eigenvalue(Scheduler& 
     elements_->evaluate(scheduler, position, {.rotation = !is_linear(), .force = false, .energy = false});
     matrix_->assemble(scheduler, {.mass = 0, .stiffness = 1});
     matrix_is_known_ = false;
-    return runtime::largest_eigenvalue(scheduler, *matrix_, *numbering_, mass_, tolerance);
+    return runtime::largest_eigenvalue(scheduler, *matrix_, *numbering_, inertia_.row_sums, tolerance);
 }
 
 template <class Real, class Accumulate>
@@ -591,23 +561,24 @@ void ImplicitStep<Real, Accumulate>::forget() noexcept {
 template <class Real, class Accumulate>
 std::size_t ImplicitStep<Real, Accumulate>::bytes() const noexcept {
     using kernels::heap_bytes;
-    return heap_bytes(mass_) + consistent_mass_.bytes() + matrix_->bytes() + preconditioner_->bytes() +
-           conjugate_gradients_.bytes() + heap_bytes(start_position_) + heap_bytes(start_velocity_) +
-           heap_bytes(trial_velocity_) + heap_bytes(right_hand_side_) + heap_bytes(change_) + heap_bytes(partial_);
+    return heap_bytes(inertia_.row_sums) + inertia_.consistent.bytes() + energy_.bytes() + heap_bytes(old_position_) +
+           heap_bytes(held_impulse_) + matrix_->bytes() + preconditioner_->bytes() + conjugate_gradients_.bytes() +
+           heap_bytes(start_position_) + heap_bytes(start_velocity_) + heap_bytes(trial_velocity_) +
+           heap_bytes(right_hand_side_) + heap_bytes(change_) + heap_bytes(partial_);
 }
 
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::save(std::vector<double>& numbers) const {
-    numbers.insert(numbers.end(), {kinetic_, elastic_, energy_is_known_ ? 1.0 : 0.0, matrix_is_known_ ? 1.0 : 0.0,
-                                   static_cast<double>(steps_since_renewal_), matrix_->factors().mass,
-                                   matrix_->factors().stiffness, acceleration_is_known_ ? 1.0 : 0.0});
+    numbers.insert(numbers.end(),
+                   {inner_energy_.kinetic, inner_energy_.elastic, energy_is_known_ ? 1.0 : 0.0,
+                    matrix_is_known_ ? 1.0 : 0.0, static_cast<double>(steps_since_renewal_), matrix_->factors().mass,
+                    matrix_->factors().stiffness, acceleration_is_known_ ? 1.0 : 0.0});
     preconditioner_->save(numbers);
 }
 
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::restore(Scheduler& scheduler, std::span<const double>& numbers) {
-    kinetic_ = numbers[0];
-    elastic_ = numbers[1];
+    inner_energy_ = {.kinetic = numbers[0], .elastic = numbers[1]};
     energy_is_known_ = numbers[2] != 0;
     matrix_is_known_ = numbers[3] != 0;
     steps_since_renewal_ = static_cast<int>(numbers[4]);

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "lancet/runtime/integrate/consistent_mass.hpp"
+#include "lancet/runtime/integrate/inertia.hpp"
+#include "lancet/runtime/integrate/step_energy.hpp"
 #include "lancet/runtime/integrate/step_method.hpp"
 #include "lancet/runtime/solve/conjugate_gradients.hpp"
 
@@ -19,6 +20,9 @@ namespace lancet::runtime {
 /// with c = g = h / 2 up to the middle of the step, from where the state is extrapolated. Newmark (1959): c = beta h /
 /// gamma, g = gamma h, v~ = v_n + h (1 - gamma) a_n, x~ = x_n + h v_n + h^2 (1/2 - beta) a_n - c v~, and
 /// a_n+1 = (v_n+1 - v~) / g.
+///
+/// Held nodes have their velocity of the step from its start. With a consistent mass their acceleration a_i, taken as
+/// the change of that velocity over the step's length, acts on their neighbours by -M_fi a_i: of first order in h.
 template <class Real, class Accumulate>
 class ImplicitStep final : public StepMethod<Real> {
   public:
@@ -79,20 +83,17 @@ class ImplicitStep final : public StepMethod<Real> {
                              const ConstraintFilter& filter, const Linearised& how);
     ConjugateGradientResult solve(Scheduler& scheduler, const BodyMotion& motion, const ConstraintFilter& filter,
                                   StepReport& report);
-    void newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
+    /// Both are false if a right-hand side was not finite.
+    bool newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
                 StepReport& report, StepTotals& totals);
-    void step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
+    bool step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
                          const ConstraintFilter& filter, StepReport& report, StepTotals& totals);
     void safeguard(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
                    std::span<const double> before_hold, StepReport& report, StepTotals& totals);
-    /// What the step gained in energy beyond the work of loads and holds, less what rounding explains.
-    double growth(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
-                  std::span<const double> before_hold);
+    typename StepEnergy<Real>::Step step_under(const BodyLoads& loads) const noexcept;
     /// Leaves the positions that belong to `velocity` in `motion`.
     double incremental_potential(Scheduler& scheduler, BodyMotion& motion, std::span<const double> velocity,
                                  const BodyLoads& loads);
-    double kinetic_energy(Scheduler& scheduler, std::span<const double> velocity);
-    double elastic_energy(Scheduler& scheduler, const double* position);
     /// motion.velocity += the solution of the last solve.
     void add_change(Scheduler& scheduler, BodyMotion& motion);
     /// Goes along the solution of the last solve as far as the incremental potential falls by halving the step; false
@@ -100,29 +101,33 @@ class ImplicitStep final : public StepMethod<Real> {
     bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
     void move(Scheduler& scheduler, BodyMotion& motion, double factor, std::span<const double> velocity);
-    /// A component of M v at a free node; value(node) is that component of v.
-    template <class Value>
-    double inertia(std::size_t node, const Value& value) const;
     /// Scales the velocities by `share` where no hold prescribes them.
     void slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter, double share);
-    bool is_finite(Scheduler& scheduler, std::span<const double> nodal);
+    /// held_impulse_ = -(g / h) M (v - v_before): what the change of velocity of held nodes does to their neighbours.
+    void find_held_impulse(Scheduler& scheduler, const BodyMotion& motion, std::span<const double> before_hold);
+    bool is_finite(Scheduler& scheduler, const BodyMotion& motion);
+    /// Leaves the body at rest where the step began.
+    void stop(BodyMotion& motion) noexcept;
     template <class Function>
     double sum_over_nodes(Scheduler& scheduler, const Function& value);
 
     ElasticElements<Real>* elements_;
     const kernels::NodeNumbering* numbering_;
     Settings settings_;
-    std::vector<double> mass_;  ///< row sums, [node]
-    ConsistentMass consistent_mass_;
+    Inertia inertia_;
+    StepEnergy<Real> energy_;
     std::unique_ptr<Operator<Real>> matrix_;
     std::unique_ptr<Preconditioner<Real>> preconditioner_;
     ConjugateGradients<Real, Accumulate> conjugate_gradients_;
+    kernels::AlignedVector<double> old_position_;                     ///< x_n, kept where x~ is another
     kernels::AlignedVector<double> start_position_, start_velocity_;  ///< x~ and v~
     kernels::AlignedVector<double> trial_velocity_;
+    kernels::AlignedVector<double> held_impulse_;  ///< see find_held_impulse; empty for a lumped mass
+    bool has_held_impulse_ = false;
     kernels::AlignedVector<Accumulate> right_hand_side_, change_;
     std::vector<double> partial_;
-    std::array<double, 4> fall_{};      ///< what gravity alone adds to the velocity of a body that nothing holds
-    double kinetic_ = 0, elastic_ = 0;  ///< at the end of the last step
+    std::array<double, 4> fall_{};  ///< what gravity alone adds to the velocity of a body that nothing holds
+    typename StepEnergy<Real>::Inner inner_energy_;  ///< at the end of the last step
     bool energy_is_known_ = false;
     bool matrix_is_known_ = false;
     bool acceleration_is_known_ = false;

@@ -70,7 +70,8 @@ class BodyState {
 /// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads, and slowed down if that does not bring the energy down.
 /// ImplicitStep and ExplicitStep have the equations of the other integrators. Loads that are set before a step are
 /// those at its end. Newmark's accelerations are found anew from the forces where positions, velocities or the set of
-/// held components have been changed. Held components move at constant speed during a step.
+/// held components have been changed. Held components move at constant speed during a step; with a consistent mass the
+/// change of that speed from step to step acts on their neighbours, which is of first order in dt for all integrators.
 ///
 /// The scene's loads act from the start, and are replaced by set_loads. What it prescribes is reached at the end of
 /// each step. For its floor see FloorContact; steps in which other nodes come to rest on it than before may allocate.

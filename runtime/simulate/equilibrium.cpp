@@ -264,6 +264,7 @@ class Search {
                 .first->second[static_cast<std::size_t>(p.axis)] = 0;
         }
         std::vector<NodeConstraint> constraints;
+        constraints.reserve(projections.size());
         for (const auto& [node, projection] : projections) constraints.push_back({node, projection});
         return constraints;
     }

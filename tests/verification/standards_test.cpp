@@ -150,31 +150,60 @@ TEST(Standards, CookMembrane) {
     expect_converges_to("u_y", middle, 23.967, 2e-4);
 }
 
-TEST(Standards, ElasticaWithAnEndLoad) {
-    // elastica_end_load.csv, P L^2 / E I = 2: inextensible and without shear, which a beam of L / h = 20 and nu = 0 has
-    // to (h / L)^2 of its deflection.
-    constexpr double length = 1, height = 0.05, young = 1e6, parameter = 2;
-    constexpr double inertia = height * height * height * height / 12;
-    constexpr double force = parameter * young * inertia / (length * length);
-    Convergence deflection{}, shortening{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const int n = 2 << k;
-        runtime::Scene scene = clamped_box({.cells = {20 * n, n, n}, .size = {length, height, height}}, "x_min",
-                                           {.young_modulus = young, .poisson_ratio = 0, .density = 1});
-        const mesh::Boundary boundary = mesh::boundary(scene.mesh);
-        scene.tractions.push_back({runtime::triangles_where(scene.mesh, boundary.triangles,
-                                                            [](const Point& p) { return p[0] > length - 1e-9; }),
-                                   {0, force / (height * height), 0}});
-        runtime::EquilibriumReport report;
-        const auto positions = equilibrium(scene, ElementModel::corotational, report);
-        EXPECT_EQ(report.end, runtime::EquilibriumEnd::converged) << report.explanation;
-        const Point tip = displacement_at(scene, positions, {length, height / 2, height / 2});
-        deflection.value[k] = tip[1];
-        shortening.value[k] = -tip[0];
+/// A slender beam that is clamped at x = 0, against the elastica: inextensible and without shear, which a beam of
+/// L / h = 20 and nu = 0 has to (h / L)^2 of its deflection.
+struct SlenderBeam {
+    static constexpr double length = 1, height = 0.05, young = 1e6;
+    static constexpr double section = height * height, bending = young * section * section / 12;
+
+    /// Expects the tip's place under what `load(scene)` adds to the beam.
+    static void expect_tip(double deflection, double shortening, const std::function<void(runtime::Scene&)>& load) {
+        Convergence down{}, back{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int n = 2 << k;
+            runtime::Scene scene = clamped_box({.cells = {20 * n, n, n}, .size = {length, height, height}}, "x_min",
+                                               {.young_modulus = young, .poisson_ratio = 0, .density = 1});
+            load(scene);
+            runtime::EquilibriumReport report;
+            const auto positions = equilibrium(scene, ElementModel::corotational, report);
+            EXPECT_EQ(report.end, runtime::EquilibriumEnd::converged) << report.explanation;
+            const Point tip = displacement_at(scene, positions, {length, height / 2, height / 2});
+            down.value[k] = -tip[1];
+            back.value[k] = -tip[0];
+        }
+        constexpr double slenderness = section / (length * length);
+        expect_converges_to("deflection", down, deflection, slenderness);
+        expect_converges_to("shortening", back, shortening, 2 * slenderness);
     }
-    constexpr double slenderness = height * height / (length * length);
-    expect_converges_to("deflection", deflection, 0.493457480, slenderness);
-    expect_converges_to("shortening", shortening, 0.160641721, 2 * slenderness);
+};
+
+TEST(Standards, ElasticaWithAnEndLoad) {
+    // elastica_end_load.csv, P L^2 / E I = 2.
+    SlenderBeam::expect_tip(0.493457480, 0.160641721, [](runtime::Scene& scene) {
+        constexpr double force = 2 * SlenderBeam::bending / (SlenderBeam::length * SlenderBeam::length);
+        const mesh::Boundary boundary = mesh::boundary(scene.mesh);
+        scene.tractions.push_back(
+            {runtime::triangles_where(scene.mesh, boundary.triangles,
+                                      [](const Point& p) { return p[0] > SlenderBeam::length - 1e-9; }),
+             {0, -force / SlenderBeam::section, 0}});
+    });
+}
+
+TEST(Standards, ElasticaUnderItsOwnWeight) {
+    // elastica_uniform_load.csv: q L^3 / E I, and the tip's deflection and shortening over L.
+    struct Reference {
+        double parameter, deflection, shortening;
+    };
+    for (const Reference& reference :
+         {Reference{2, 0.238506583, 0.033107053}, Reference{8, 0.640630717, 0.275575266}}) {
+        SCOPED_TRACE(reference.parameter);
+        SlenderBeam::expect_tip(reference.deflection, reference.shortening, [&](runtime::Scene& scene) {
+            constexpr double cubed_length = SlenderBeam::length * SlenderBeam::length * SlenderBeam::length;
+            const double force_per_length = reference.parameter * SlenderBeam::bending / cubed_length;
+            scene.gravity = {0, -9.81, 0};
+            scene.materials.at(0).density = force_per_length / (9.81 * SlenderBeam::section);
+        });
+    }
 }
 
 /// The lowest frequency in Hz by inverse iteration: each step is a static problem under the forces M u.

@@ -20,10 +20,12 @@ using runtime::Integrator;
 
 constexpr std::array<int, 3> cells{5, 2, 2};
 
-double largest_eigenvalue_of(const ReferenceSolid& solid, const Eigen::VectorXd& position, bool corotational) {
+double largest_eigenvalue_of(const ReferenceSolid& solid, const Eigen::VectorXd& position, ElementModel model) {
+    const auto tangent =
+        model == ElementModel::st_venant_kirchhoff ? runtime::TangentKind::exact : runtime::TangentKind::rotated;
     const std::vector<std::uint8_t> is_free = solid.free_unknowns();
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        restricted(solid.stiffness(position, corotational), is_free), restricted(solid.mass(false), is_free),
+        restricted(solid.stiffness(position, model, tangent), is_free), restricted(solid.mass(false), is_free),
         Eigen::EigenvaluesOnly);
     return eigen.eigenvalues().maxCoeff();
 }
@@ -76,7 +78,7 @@ using BodyChoice = std::tuple<Integrator, ElementModel, runtime::ScalarMode>;
 
 std::string name_of(const BodyChoice& choice) {
     const auto& [integrator, model, scalar] = choice;
-    return identifier(to_string(integrator)) + (model == ElementModel::linear ? "_linear_" : "_corotational_") +
+    return identifier(to_string(integrator)) + "_" + identifier(to_string(model)) + "_" +
            std::string(to_string(scalar));
 }
 
@@ -84,8 +86,7 @@ class CriticalStepOf : public ::testing::TestWithParam<BodyChoice> {};
 INSTANTIATE_TEST_SUITE_P(Bodies, CriticalStepOf,
                          ::testing::Combine(::testing::Values(Integrator::implicit_euler,
                                                               Integrator::central_differences),
-                                            ::testing::Values(ElementModel::linear, ElementModel::corotational),
-                                            ::testing::ValuesIn(all_scalars)),
+                                            ::testing::ValuesIn(all_models), ::testing::ValuesIn(all_scalars)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(CriticalStepOf, ABodyIsThatOfTheAssembledMatrices) {
@@ -94,7 +95,7 @@ TEST_P(CriticalStepOf, ABodyIsThatOfTheAssembledMatrices) {
     fix_first_section(solid, cells);
     runtime::Settings settings = accurate_settings();
     settings.integrator = integrator;
-    settings.model = model;
+    set_model(settings, model);
     settings.scalar = scalar;
     settings.energy_safeguard = false;
     settings.time_step = 1e-5;
@@ -104,7 +105,7 @@ TEST_P(CriticalStepOf, ABodyIsThatOfTheAssembledMatrices) {
     const Eigen::VectorXd position =
         solid.rest() + extended(restricted(random_vector(solid.unknowns(), 0.01, 192), is_free), is_free);
     body->set_positions(as_points(position));
-    const double expected = 2 / std::sqrt(largest_eigenvalue_of(solid, position, model == ElementModel::corotational));
+    const double expected = 2 / std::sqrt(largest_eigenvalue_of(solid, position, model));
     const double found = body->critical_time_step(*scheduler);
     const double tolerance = scalar == runtime::ScalarMode::double_precision ? 1e-6 : 5e-6;
     EXPECT_NEAR(found, expected, tolerance * expected);
@@ -116,10 +117,10 @@ TEST(CriticalStep, DividesStableFromUnstableSteps) {
     fix_first_section(solid, cells);
     const auto scheduler = serial();
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::central_differences}) {
-        for (const ElementModel model : {ElementModel::linear, ElementModel::corotational}) {
+        for (const ElementModel model : all_models) {
             runtime::Settings settings = accurate_settings();
             settings.integrator = integrator;
-            settings.model = model;
+            set_model(settings, model);
             settings.energy_safeguard = false;
             settings.time_step = 1e-5;
             settings.force_time_step = true;
@@ -154,27 +155,31 @@ TEST(CriticalStep, LongerStepsAreRefusedWithBothNumbers) {
     fix_first_section(solid, cells);
     const auto scheduler = serial();
     for (const Integrator integrator : {Integrator::symplectic_euler, Integrator::central_differences}) {
-        runtime::Settings settings = accurate_settings();
-        settings.integrator = integrator;
-        settings.energy_safeguard = false;
-        settings.time_step = 0.04;
-        const double critical = 2 / std::sqrt(largest_eigenvalue_of(solid, solid.rest(), true));
-        std::ostringstream number;
-        number << critical;
-        try {
-            make_body(scene_of(solid), settings, *scheduler);
-            ADD_FAILURE() << "no error";
-        } catch (const Error& error) {
-            EXPECT_THAT(error.what(), ::testing::HasSubstr("0.04 s"));
-            EXPECT_THAT(error.what(), ::testing::HasSubstr(number.str().substr(0, 6)));
+        for (const ElementModel model : all_models) {
+            SCOPED_TRACE(::testing::Message() << to_string(integrator) << ", " << to_string(model));
+            runtime::Settings settings = accurate_settings();
+            settings.integrator = integrator;
+            set_model(settings, model);
+            settings.energy_safeguard = false;
+            settings.time_step = 0.04;
+            const double critical = 2 / std::sqrt(largest_eigenvalue_of(solid, solid.rest(), model));
+            std::ostringstream number;
+            number << critical;
+            try {
+                make_body(scene_of(solid), settings, *scheduler);
+                ADD_FAILURE() << "no error";
+            } catch (const Error& error) {
+                EXPECT_THAT(error.what(), ::testing::HasSubstr("0.04 s"));
+                EXPECT_THAT(error.what(), ::testing::HasSubstr(number.str().substr(0, 6)));
+            }
+            settings.time_step = 1.00001 * critical;
+            EXPECT_THROW(make_body(scene_of(solid), settings, *scheduler), Error);
+            settings.force_time_step = true;
+            EXPECT_NO_THROW(make_body(scene_of(solid), settings, *scheduler));
+            settings.force_time_step = false;
+            settings.time_step = 0.99999 * critical;
+            EXPECT_NO_THROW(make_body(scene_of(solid), settings, *scheduler));
         }
-        settings.time_step = 1.00001 * critical;
-        EXPECT_THROW(make_body(scene_of(solid), settings, *scheduler), Error);
-        settings.force_time_step = true;
-        EXPECT_NO_THROW(make_body(scene_of(solid), settings, *scheduler));
-        settings.force_time_step = false;
-        settings.time_step = 0.99999 * critical;
-        EXPECT_NO_THROW(make_body(scene_of(solid), settings, *scheduler));
     }
 }
 

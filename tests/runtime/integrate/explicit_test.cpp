@@ -53,8 +53,8 @@ struct Problem {
         return body;
     }
     /// M^-1 of all forces but the damping.
-    Eigen::VectorXd acceleration(const Eigen::VectorXd& x, bool corotational) const {
-        Eigen::VectorXd a = (solid.elastic_force(x, corotational) + load).cwiseQuotient(mass);
+    Eigen::VectorXd acceleration(const Eigen::VectorXd& x, ElementModel model) const {
+        Eigen::VectorXd a = (solid.elastic_force(x, model) + load).cwiseQuotient(mass);
         for (Eigen::Index i = 0; i < a.size(); i += 3) a.segment<3>(i) += Eigen::Vector3d(scene.gravity.data());
         return on_free(a);
     }
@@ -62,11 +62,9 @@ struct Problem {
 
 class ExplicitStepOf : public ::testing::TestWithParam<std::tuple<ElementModel, runtime::ScalarMode>> {};
 INSTANTIATE_TEST_SUITE_P(Bodies, ExplicitStepOf,
-                         ::testing::Combine(::testing::Values(ElementModel::linear, ElementModel::corotational),
-                                            ::testing::ValuesIn(all_scalars)),
+                         ::testing::Combine(::testing::ValuesIn(all_models), ::testing::ValuesIn(all_scalars)),
                          [](const auto& instance) {
-                             return std::string(std::get<0>(instance.param) == ElementModel::linear ? "linear_"
-                                                                                                    : "corotational_") +
+                             return identifier(to_string(std::get<0>(instance.param))) + "_" +
                                     std::string(to_string(std::get<1>(instance.param)));
                          });
 
@@ -75,12 +73,12 @@ TEST_P(ExplicitStepOf, SymplecticEulerSatisfiesItsEquations) {
     const Problem problem;
     const auto scheduler = serial();
     runtime::Settings settings = explicit_settings(Integrator::symplectic_euler);
-    settings.model = model;
+    set_model(settings, model);
     settings.scalar = scalar;
     const auto body = problem.body(settings);
     Eigen::VectorXd x = problem.position, v = problem.velocity;
     for (int step = 0; step < 5; ++step) {
-        const Eigen::VectorXd a = problem.acceleration(x, model == ElementModel::corotational);
+        const Eigen::VectorXd a = problem.acceleration(x, model);
         v = (v + time_step * a) / (1 + time_step * problem.scene.rayleigh_mass);
         x += time_step * v;
         const runtime::StepReport report = body->step(*scheduler);
@@ -96,19 +94,17 @@ TEST_P(ExplicitStepOf, CentralDifferencesSatisfyTheirEquations) {
     const Problem problem;
     const auto scheduler = serial();
     runtime::Settings settings = explicit_settings(Integrator::central_differences);
-    settings.model = model;
+    set_model(settings, model);
     settings.scalar = scalar;
     const auto body = problem.body(settings);
-    const bool corotational = model == ElementModel::corotational;
     const double alpha = problem.scene.rayleigh_mass, h = time_step;
     // (v_n+1/2 - v_n-1/2) / h = M^-1 f(x_n) - alpha (v_n+1/2 + v_n-1/2) / 2.
     Eigen::VectorXd x = problem.position;
-    Eigen::VectorXd half =
-        problem.velocity + h / 2 * (problem.acceleration(x, corotational) - alpha * problem.velocity);
+    Eigen::VectorXd half = problem.velocity + h / 2 * (problem.acceleration(x, model) - alpha * problem.velocity);
     for (int step = 0; step < 5; ++step) {
         x += h * half;
         const Eigen::VectorXd next =
-            ((1 - h * alpha / 2) * half + h * problem.acceleration(x, corotational)) / (1 + h * alpha / 2);
+            ((1 - h * alpha / 2) * half + h * problem.acceleration(x, model)) / (1 + h * alpha / 2);
         body->step(*scheduler);
         const Eigen::VectorXd v = (half + next) / 2;
         EXPECT_LE((velocities_of(*body) - v).norm(), 200 * epsilon_of(scalar) * v.norm());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "tests/runtime/solve/bodies_under_test.hpp"
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ Course tumble(runtime::Settings settings, double spin, int count) {
 runtime::Settings settings_of(Integrator integrator, ElementModel model, double time_step) {
     runtime::Settings settings = accurate_settings(1e-13);
     settings.integrator = integrator;
-    settings.model = model;
+    set_model(settings, model);
     settings.time_step = time_step;
     settings.energy_safeguard = false;
     if (!runtime::is_explicit(integrator)) {
@@ -117,14 +118,20 @@ TEST(Tumbling, NewmarkWithAverageAccelerationBoundsTheEnergy) {
     EXPECT_LE(course.largest_deviation, 1e-2);
 }
 
-class Symplectic : public ::testing::TestWithParam<Integrator> {};
-INSTANTIATE_TEST_SUITE_P(Integrators, Symplectic,
-                         ::testing::Values(Integrator::symplectic_euler, Integrator::central_differences),
-                         [](const auto& instance) { return identifier(to_string(instance.param)); });
+class Symplectic : public ::testing::TestWithParam<std::tuple<Integrator, ElementModel>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Integrators, Symplectic,
+    ::testing::Combine(::testing::Values(Integrator::symplectic_euler, Integrator::central_differences),
+                       ::testing::Values(ElementModel::corotational, ElementModel::st_venant_kirchhoff)),
+    [](const auto& instance) {
+        return identifier(to_string(std::get<0>(instance.param))) + "_" +
+               identifier(to_string(std::get<1>(instance.param)));
+    });
 
 TEST_P(Symplectic, KeepsMomentaToRoundingAndBoundsTheEnergy) {
+    const auto& [integrator, model] = GetParam();
     for (const double time_step : {1e-3, 5e-4}) {
-        const Course course = tumble(settings_of(GetParam(), ElementModel::corotational, time_step), 6, steps);
+        const Course course = tumble(settings_of(integrator, model, time_step), 6, steps);
         EXPECT_LE(course.momentum, 1e-12);
         EXPECT_LE(course.angular_momentum, 1e-10);
         EXPECT_LE(course.largest_deviation, 2e-2);

@@ -121,6 +121,8 @@ Motion reference_step(const Problem& problem, const runtime::Settings& settings,
     const Eigen::MatrixXd matrix = mass + h * damping + h * h * stiffness;
     Eigen::VectorXd right = h * (problem.solid.elastic_force(at, corotational) + external) - h * (damping * velocity);
     if (!at_prediction) right -= h * h * (stiffness * velocity);
+    // What the held nodes' change of velocity takes, of which a half step sees half.
+    right -= h / settings.time_step * (mass * (velocity - start.velocity));
     const Eigen::VectorXd change = basis * (basis.transpose() * matrix * basis).llt().solve(basis.transpose() * right);
     Motion end{start.position, velocity + change};
     end.position += settings.time_step * end.velocity;
@@ -222,19 +224,11 @@ TEST_P(NewtonStep, SatisfiesTheEquationsOfImplicitEuler) {
         for (Eigen::Index i = 0; i < weight.size(); i += 3) {
             weight.segment<3>(i) = Eigen::Vector3d(problem.scene.gravity.data());
         }
-        // Held nodes have the velocity of their hold when the step starts; no free node depends on it for a lumped
-        // mass. With a consistent one it is the inertia of what they were given.
-        Eigen::VectorXd before = start.velocity;
-        for (const Hold& hold : problem.holds) {
-            const Eigen::Vector3d wanted = (hold.target - start.position.segment<3>(3 * hold.node)) / h;
-            auto v = before.segment<3>(3 * hold.node);
-            v = hold.direction.isZero() ? wanted : Eigen::Vector3d(v + hold.direction * hold.direction.dot(wanted - v));
-        }
         const Eigen::VectorXd external = mass * weight + problem.load;
         const Eigen::MatrixXd damping = problem.scene.rayleigh_mass * mass +
                                         problem.scene.rayleigh_stiffness * problem.solid.stiffness(end.position, true);
         const Eigen::VectorXd residual =
-            mass * (end.velocity - before) -
+            mass * (end.velocity - start.velocity) -
             h * (problem.solid.elastic_force(end.position, true) + external - damping * end.velocity);
         const Eigen::MatrixXd basis = problem.allowed();
         const double scale = h * (basis.transpose() * external).norm();

@@ -35,6 +35,13 @@ inline runtime::Settings accurate_settings(double tolerance = 1e-12) {
     return settings;
 }
 
+/// Sets a model with a tangent that it has: the rotated one where there is one.
+inline void set_model(runtime::Settings& settings, runtime::ElementModel model) {
+    settings.model = model;
+    settings.tangent = model == runtime::ElementModel::st_venant_kirchhoff ? runtime::TangentKind::exact
+                                                                           : runtime::TangentKind::rotated;
+}
+
 inline std::unique_ptr<runtime::Scheduler> serial() {
     return runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
 }
@@ -71,6 +78,8 @@ inline std::string identifier(std::string_view text) {
     return name;
 }
 
+inline constexpr std::array all_models{runtime::ElementModel::linear, runtime::ElementModel::corotational,
+                                       runtime::ElementModel::st_venant_kirchhoff};
 inline constexpr std::array all_scalars{runtime::ScalarMode::single_precision, runtime::ScalarMode::mixed,
                                         runtime::ScalarMode::double_precision};
 inline constexpr std::array all_operators{runtime::OperatorKind::matrix_free, runtime::OperatorKind::edge_blocks,
