@@ -158,7 +158,7 @@ Category sequences() {
                 "step, changes with strain.",
             .variants = all_dynamics(),
             .cases = 10000,
-            .quick_cases = 300,
+            .quick_cases = 140,
             .run = run};
 }
 
