@@ -59,7 +59,8 @@ struct Settings {
     ElementModel model = ElementModel::corotational;
     TangentKind tangent = TangentKind::rotated;  ///< see ElasticLaw
     /// By default row sums for implicit integrators, which keep the centre of mass of each part of a cut element, and
-    /// fractions for explicit ones, whose critical step no cut then shortens; without cuts both are the same.
+    /// fractions for explicit ones, whose critical step then is at least that of the single elements, whatever is cut;
+    /// without cuts both are the same.
     std::optional<MassKind> mass{};
     ScalarMode scalar = ScalarMode::single_precision;
     kernels::InstructionSet instruction_set = kernels::active_instruction_set();
