@@ -1,18 +1,15 @@
 #include "lancet/experiments/cutting/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ostream>
 #include <sstream>
-#include <system_error>
-
-#include <unistd.h>
 
 #include "lancet/experiments/common/file.hpp"
-#include "lancet/experiments/common/process.hpp"
+#include "lancet/experiments/common/gnuplot.hpp"
 #include "lancet/experiments/common/table.hpp"
-#include "lancet/kernels/error.hpp"
 
 namespace lancet::experiments::cutting {
 namespace {
@@ -84,13 +81,6 @@ std::string data_name(const std::string& name, std::size_t shape) {
     return name + "-" + std::to_string(shape) + ".dat";
 }
 
-/// Gnuplot's single quotes know no escapes but the doubled quote.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
-}
-
 std::string script(std::span<const Shape> shapes, const View& view, const std::string& title, const std::string& name) {
     Point low{}, high{};
     bool is_first = true;
@@ -129,34 +119,12 @@ std::string script(std::span<const Shape> shapes, const View& view, const std::s
 
 std::string draw(std::span<const Shape> shapes, const View& view, const std::string& title,
                  const std::filesystem::path& folder, const std::string& name) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error("--plot: the folder '" + folder.string() + "' cannot be made: " + failed.message());
+    make_plot_folder(folder);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         write_file(folder / data_name(name, i), [&](std::ostream& stream) { write_data(stream, shapes[i], view); });
     }
     write_file(folder / (name + ".gp"), script(shapes, view, title, name));
-
-    const std::string part = ".part" + std::to_string(::getpid());
-    const std::filesystem::path picture = folder / (name + ".png");
-    std::filesystem::path drawn = picture;
-    drawn += part;
-    const Command command{
-        .program = "gnuplot",
-        .arguments = {"-e", "cd " + quoted(std::filesystem::absolute(folder).string()), "-e", "part = " + quoted(part),
-                      std::filesystem::absolute(folder / (name + ".gp")).string()}};
-    try {
-        const ProcessResult result = run_process(command);
-        if (!result.succeeded()) {
-            std::filesystem::remove(drawn, failed);
-            return "gnuplot ended with " + describe(result.end);
-        }
-    } catch (const Error& error) {
-        return error.what();
-    }
-    std::filesystem::rename(drawn, picture, failed);
-    if (failed) return "gnuplot drew no " + picture.filename().string() + ": " + failed.message();
-    return {};
+    return run_gnuplot(folder, name, std::array<std::string, 1>{".png"});
 }
 
 }  // namespace lancet::experiments::cutting

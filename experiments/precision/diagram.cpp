@@ -1,18 +1,15 @@
 #include "lancet/experiments/precision/diagram.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <sstream>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include <unistd.h>
-
 #include "lancet/experiments/common/file.hpp"
-#include "lancet/experiments/common/process.hpp"
+#include "lancet/experiments/common/gnuplot.hpp"
 #include "lancet/experiments/precision/pareto.hpp"
-#include "lancet/kernels/error.hpp"
 
 namespace lancet::experiments::precision {
 namespace {
@@ -71,13 +68,6 @@ std::string data(const std::vector<Series>& series, std::span<const Row> rows, S
     return text.str();
 }
 
-/// Gnuplot's single quotes know no escapes but the doubled quote.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-    return result + "'";
-}
-
 std::string script(const std::vector<Series>& series, Shown shown, const std::string& title, const std::string& name) {
     // Okabe and Ito's colours, told apart by every kind of sight; baselines have open symbols.
     const std::vector<std::string> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -117,32 +107,12 @@ std::string script(const std::vector<Series>& series, Shown shown, const std::st
 
 std::string draw(std::span<const Row> rows, Shown shown, const std::string& title, const std::filesystem::path& folder,
                  const std::string& name) {
-    std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    if (failed) throw Error("--plot: the folder '" + folder.string() + "' cannot be made: " + failed.message());
+    make_plot_folder(folder);
     const std::vector<Series> series = series_of(rows);
     write_file(folder / (name + ".dat"), data(series, rows, shown));
     write_file(folder / (name + ".gp"), script(series, shown, title, name));
 
-    const std::string part = ".part" + std::to_string(::getpid());
-    const Command command{
-        .program = "gnuplot",
-        .arguments = {"-e", "cd " + quoted(std::filesystem::absolute(folder).string()), "-e", "part = " + quoted(part),
-                      std::filesystem::absolute(folder / (name + ".gp")).string()}};
-    try {
-        const ProcessResult result = run_process(command);
-        if (!result.succeeded()) return "gnuplot ended with " + describe(result.end);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    for (const char* ending : {".svg", ".png"}) {
-        const std::filesystem::path picture = folder / (name + ending);
-        std::filesystem::path drawn = picture;
-        drawn += part;
-        std::filesystem::rename(drawn, picture, failed);
-        if (failed) return "gnuplot drew no " + picture.filename().string() + ": " + failed.message();
-    }
-    return {};
+    return run_gnuplot(folder, name, std::array<std::string, 2>{".svg", ".png"});
 }
 
 }  // namespace lancet::experiments::precision
