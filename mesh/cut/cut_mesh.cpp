@@ -93,8 +93,9 @@ CutReport CutMesh::cut(const CutSurface& surface, FrontTreatment front, std::spa
 void CutMesh::require_finite(const CutSurface& surface, std::span<const Point> positions) const {
     for (std::size_t copy = 0; copy < positions.size(); ++copy) {
         for (const double value : positions[copy]) {
-            if (!std::isfinite(value))
+            if (!std::isfinite(value)) {
                 throw Error("cut: the position of copy " + std::to_string(copy) + " is not finite");
+            }
         }
     }
     // Planes are finite where the makers of surfaces let them pass; a function is anybody's.

@@ -61,8 +61,6 @@ class CutMesh {
                   std::span<const Point> positions = {});
 
     const TetMesh& mesh() const noexcept { return *mesh_; }
-    /// True where a cut has touched anything.
-    bool is_cut() const noexcept { return !cells_.empty(); }
 
     /// The copies at the corners of each part.
     std::span<const Tetrahedron> parts() const noexcept { return parts_; }

@@ -27,8 +27,6 @@ class FrontOpening {
     const std::vector<std::int32_t>& opened_from() const noexcept { return opened_from_; }
     /// The pieces of all elements around opening copies.
     std::map<std::int32_t, std::vector<Piece>> pieces() const;
-    /// How far the k-th of them is open.
-    double openness(std::size_t k) const { return fronts_.at(opened_from_[k]).openness(); }
 
   private:
     /// A plane of a cut by the values of its function at the corners of an element.
