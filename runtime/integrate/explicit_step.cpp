@@ -96,19 +96,18 @@ bool ExplicitStep<Real>::take_step(Scheduler& scheduler, BodyMotion& motion, con
 }
 
 template <class Real>
-StepReport ExplicitStep<Real>::advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                                       const ConstraintFilter& filter, std::span<const double>, StepTotals& totals) {
+void ExplicitStep<Real>::run(StepStage stage, Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+                             StepTotals& totals) {
+    if (stage != StepStage::forces) return;
     const double begin = steady_seconds(), forces = totals.seconds_forces;
-    StepReport report;
-    if (!take_step(scheduler, motion, loads, filter, totals)) {
+    if (!take_step(scheduler, subject.motion, subject.loads, subject.filter, totals)) {
         report.lost = true;
-        std::fill(motion.velocity.begin(), motion.velocity.end(), 0.0);
+        std::fill(subject.motion.velocity.begin(), subject.motion.velocity.end(), 0.0);
         acceleration_is_known_ = false;
         ++totals.lost;
     }
     ++totals.steps;
     totals.seconds_rest += steady_seconds() - begin - (totals.seconds_forces - forces);
-    return report;
 }
 
 template <class Real>

@@ -21,8 +21,9 @@ class ExplicitStep final : public StepMethod<Real> {
     /// `elements` must outlive it; their layout is one that a matrix-free product reads.
     ExplicitStep(ElasticElements<Real>& elements, std::vector<double> nodal_mass, const Settings& settings);
 
-    StepReport advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
-                       std::span<const double> before_hold, StepTotals& totals) override;
+    /// All is done in the first stage: there is no system to be solved.
+    void run(StepStage stage, Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+             StepTotals& totals) override;
     Energies energies(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                       std::span<const double> rest_position) override;
     /// M (1 + h alpha) for symplectic Euler, M (1 + h alpha / 2) for central differences.

@@ -99,23 +99,32 @@ void ImplicitStep<Real, Accumulate>::add_change(Scheduler& scheduler, BodyMotion
 }
 
 template <class Real, class Accumulate>
-void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads,
-                                               bool renew) {
-    const double g = momentum_length();
-    const typename Operator<Real>::Factors factors{.mass = 1 + g * loads.rayleigh_mass,
-                                                   .stiffness = g * position_length() + g * loads.rayleigh_stiffness};
-    const bool same_factors =
-        factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
+bool ImplicitStep<Real, Accumulate>::evaluate(Scheduler& scheduler, const double* position, bool renew) {
     const bool rotate = !is_linear() && (renew || !matrix_is_known_);
     elements_->evaluate(scheduler, position,
                         {.rotation = rotate,
                          .force = true,
                          .energy = false,
                          .start = takes_average_stress() ? start_position_.data() : nullptr});
-    if (rotate || !matrix_is_known_ || !same_factors) {
-        matrix_->assemble(scheduler, factors);
-        matrix_is_known_ = false;  // until the preconditioner has it too
-    }
+    return rotate;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::assemble(Scheduler& scheduler, const BodyLoads& loads, bool rotated) {
+    const double g = momentum_length();
+    const typename Operator<Real>::Factors factors{.mass = 1 + g * loads.rayleigh_mass,
+                                                   .stiffness = g * position_length() + g * loads.rayleigh_stiffness};
+    const bool same_factors =
+        factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
+    if (!rotated && matrix_is_known_ && same_factors) return;
+    matrix_->assemble(scheduler, factors);
+    matrix_is_known_ = false;  // until the preconditioner has it too
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads,
+                                               bool renew) {
+    assemble(scheduler, loads, evaluate(scheduler, position, renew));
 }
 
 template <class Real, class Accumulate>
@@ -185,12 +194,16 @@ typename ImplicitStep<Real, Accumulate>::Residual ImplicitStep<Real, Accumulate>
 }
 
 template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::refresh(Scheduler& scheduler, const BodyMotion& motion) {
+    if (matrix_is_known_) return;
+    preconditioner_->refresh(scheduler, motion.position.data());
+    matrix_is_known_ = true;
+}
+
+template <class Real, class Accumulate>
 ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& scheduler, const BodyMotion& motion,
                                                               const ConstraintFilter& filter, StepReport& report) {
-    if (!matrix_is_known_) {
-        preconditioner_->refresh(scheduler, motion.position.data());
-        matrix_is_known_ = true;
-    }
+    refresh(scheduler, motion);
     const ConjugateGradientResult result = conjugate_gradients_.solve(
         scheduler, *matrix_, *preconditioner_, filter, std::span<const Accumulate>(right_hand_side_),
         std::span<Accumulate>(change_), settings_.conjugate_gradients);
@@ -200,77 +213,80 @@ ConjugateGradientResult ImplicitStep<Real, Accumulate>::solve(Scheduler& schedul
 }
 
 template <class Real, class Accumulate>
-bool ImplicitStep<Real, Accumulate>::step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                                                     const ConstraintFilter& filter, StepReport& report,
-                                                     StepTotals& totals) {
+void ImplicitStep<Real, Accumulate>::set_up_system(Scheduler& scheduler, const StepSubject& subject,
+                                                   StepTotals& totals) {
     Timer timer;
-    const bool renew = steps_since_renewal_ == 0;
-    linearise(scheduler, motion.position.data(), loads, renew);
+    const auto& [motion, loads, filter, before_hold] = subject;
+    assemble(scheduler, loads, is_rotated_);
     timer.add_to(totals.seconds_forces);
-    const Residual residual = right_hand_side(scheduler, motion, loads, filter, {.at_state = true, .falls_free = true});
+    // Before the preconditioner, which is gathered where the forces are.
+    const Residual residual =
+        right_hand_side(scheduler, motion, loads, filter, {.at_state = is_at_state(), .falls_free = true});
+    newton_ = {.reference = 0, .potential = 0, .is_finite = std::isfinite(residual.squared_norm)};
+    if (iterations() > 1) {
+        const double load = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+            double square = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double force = inertia_.row_sums[node] * loads.gravity[axis] + loads.nodal[at + axis];
+                square += force * force;
+            }
+            return square;
+        });
+        newton_.reference = std::max(std::sqrt(residual.squared_norm), momentum_length() * std::sqrt(load));
+    }
     timer.add_to(totals.seconds_rest);
-    solve(scheduler, motion, filter, report);
+    refresh(scheduler, motion);
     timer.add_to(totals.seconds_solve);
-    add_change(scheduler, motion);
-    move(scheduler, motion, position_length(), motion.velocity);
-    report.newton_iterations = 1;
-    timer.add_to(totals.seconds_rest);
-    return std::isfinite(residual.squared_norm);
 }
 
 template <class Real, class Accumulate>
-bool ImplicitStep<Real, Accumulate>::newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                                            const ConstraintFilter& filter, StepReport& report, StepTotals& totals) {
-    const double c = position_length();
-    double reference = 0, potential = 0;
-    bool is_finite = true;
+bool ImplicitStep<Real, Accumulate>::accept(Scheduler& scheduler, const StepSubject& subject, bool is_first,
+                                            StepReport& report, StepTotals& totals) {
+    Timer timer;
+    const auto& [motion, loads, filter, before_hold] = subject;
+    ++report.newton_iterations;
     // A line search needs the potential of all forces, which stiffness-proportional damping and the average stress of
     // a step do not have.
-    const bool iterates = settings_.newton_iterations > 1 && loads.rayleigh_stiffness == 0 && !takes_average_stress();
-    for (int iteration = 0; iteration < settings_.newton_iterations; ++iteration) {
+    const bool searches = iterations() > 1 && loads.rayleigh_stiffness == 0 && !takes_average_stress();
+    if (!searches) {
+        add_change(scheduler, motion);
+        timer.add_to(totals.seconds_rest);
+        return true;
+    }
+    // Where no step along the direction descends, the iterate is as good as the scalar type allows.
+    if (is_first) newton_.potential = incremental_potential(scheduler, motion, motion.velocity, loads);
+    // Rounding of the scalar, and of the positions: small strains are differences of large coordinates.
+    const double rounding =
+        std::max(64 * static_cast<double>(std::numeric_limits<Real>::epsilon()), 1e-10) * std::abs(newton_.potential);
+    const bool descended = descend(scheduler, motion, loads, newton_.potential, rounding);
+    timer.add_to(totals.seconds_forces);
+    return descended;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::iterate(Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+                                             StepTotals& totals) {
+    const auto& [motion, loads, filter, before_hold] = subject;
+    const double c = position_length();
+    bool goes_on = accept(scheduler, subject, true, report, totals);
+    for (int iteration = 1; goes_on && iteration < iterations(); ++iteration) {
         Timer timer;
         move(scheduler, motion, c, motion.velocity);
         timer.add_to(totals.seconds_rest);
-        linearise(scheduler, motion.position.data(), loads, iteration > 0 || steps_since_renewal_ == 0);
+        linearise(scheduler, motion.position.data(), loads, true);
         timer.add_to(totals.seconds_forces);
         const Residual residual =
-            right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = iteration == 0});
-        is_finite = is_finite && std::isfinite(residual.squared_norm);
-        if (iteration == 0) {
-            const double load = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
-                double square = 0;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const double force = inertia_.row_sums[node] * loads.gravity[axis] + loads.nodal[at + axis];
-                    square += force * force;
-                }
-                return square;
-            });
-            reference = std::max(std::sqrt(residual.squared_norm), momentum_length() * std::sqrt(load));
-        }
+            right_hand_side(scheduler, motion, loads, filter, {.at_state = false, .falls_free = false});
+        newton_.is_finite = newton_.is_finite && std::isfinite(residual.squared_norm);
         timer.add_to(totals.seconds_rest);
-        if (iteration > 0 && std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * reference) break;
+        if (std::sqrt(residual.squared_norm) <= settings_.newton_tolerance * newton_.reference) break;
         solve(scheduler, motion, filter, report);
         timer.add_to(totals.seconds_solve);
-        if (iterates) {
-            // Where no step along the direction descends, the iterate is as good as the scalar type allows.
-            if (iteration == 0) potential = incremental_potential(scheduler, motion, motion.velocity, loads);
-            // Rounding of the scalar, and of the positions: small strains are differences of large coordinates.
-            const double rounding =
-                std::max(64 * static_cast<double>(std::numeric_limits<Real>::epsilon()), 1e-10) * std::abs(potential);
-            const bool descended = descend(scheduler, motion, loads, potential, rounding);
-            timer.add_to(totals.seconds_forces);
-            ++report.newton_iterations;
-            if (!descended) break;
-            continue;
-        }
-        add_change(scheduler, motion);
-        ++report.newton_iterations;
-        timer.add_to(totals.seconds_rest);
+        goes_on = accept(scheduler, subject, false, report, totals);
     }
     Timer timer;
     move(scheduler, motion, c, motion.velocity);
     timer.add_to(totals.seconds_rest);
-    return is_finite;
 }
 
 template <class Real, class Accumulate>
@@ -453,10 +469,27 @@ void ImplicitStep<Real, Accumulate>::stop(BodyMotion& motion) noexcept {
 }
 
 template <class Real, class Accumulate>
-StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                                                   const ConstraintFilter& filter, std::span<const double> before_hold,
-                                                   StepTotals& totals) {
-    StepReport report;
+void ImplicitStep<Real, Accumulate>::run(StepStage stage, Scheduler& scheduler, const StepSubject& subject,
+                                         StepReport& report, StepTotals& totals) {
+    switch (stage) {
+        case StepStage::forces:
+            return begin(scheduler, subject, totals);
+        case StepStage::matrix:
+            return set_up_system(scheduler, subject, totals);
+        case StepStage::solve: {
+            Timer timer;
+            solve(scheduler, subject.motion, subject.filter, report);
+            timer.add_to(totals.seconds_solve);
+            return;
+        }
+        case StepStage::update:
+            return end(scheduler, subject, report, totals);
+    }
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::begin(Scheduler& scheduler, const StepSubject& subject, StepTotals& totals) {
+    const auto& [motion, loads, filter, before_hold] = subject;
     Timer timer;
     if (settings_.energy_safeguard && !energy_is_known_) {
         inner_energy_ = {.kinetic = energy_.kinetic(
@@ -474,10 +507,17 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     start_position_ = motion.position;
     start_velocity_ = motion.velocity;
     if (is_newmark()) begin_newmark(scheduler, motion);
+    if (!is_at_state()) move(scheduler, motion, position_length(), motion.velocity);
     timer.add_to(totals.seconds_rest);
-    const bool from_state = settings_.linearisation == Linearisation::state;
-    const bool equations_are_finite = from_state ? step_from_state(scheduler, motion, loads, filter, report, totals)
-                                                 : newton(scheduler, motion, loads, filter, report, totals);
+    is_rotated_ = evaluate(scheduler, motion.position.data(), steps_since_renewal_ == 0);
+    timer.add_to(totals.seconds_forces);
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::end(Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+                                         StepTotals& totals) {
+    const auto& [motion, loads, filter, before_hold] = subject;
+    iterate(scheduler, subject, report, totals);
     if (settings_.energy_safeguard) {
         safeguard(scheduler, motion, loads, filter, before_hold, report, totals);
     }
@@ -497,7 +537,7 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     // Where the safeguard has found no growth, energies and with them the state are finite. Without it a step whose
     // equations are not has gone on as if there were no forces.
     const bool is_guarded = settings_.energy_safeguard;
-    if (((!is_guarded || report.repeated) && !is_finite(scheduler, motion)) || !(is_guarded || equations_are_finite)) {
+    if (((!is_guarded || report.repeated) && !is_finite(scheduler, motion)) || !(is_guarded || newton_.is_finite)) {
         stop(motion);
         report.lost = true;
     }
@@ -510,7 +550,6 @@ StepReport ImplicitStep<Real, Accumulate>::advance(Scheduler& scheduler, BodyMot
     totals.lost += report.lost ? 1 : 0;
     totals.coarse_refreshes = preconditioner_->coarse_refreshes();
     totals.coarse_failures = preconditioner_->coarse_failures();
-    return report;
 }
 
 template <class Real, class Accumulate>

@@ -28,8 +28,8 @@ class ImplicitStep final : public StepMethod<Real> {
   public:
     ImplicitStep(ElasticElements<Real>& elements, const OperatorDefinition& definition, const Settings& settings);
 
-    StepReport advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
-                       std::span<const double> before_hold, StepTotals& totals) override;
+    void run(StepStage stage, Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+             StepTotals& totals) override;
     Energies energies(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                       std::span<const double> rest_position) override;
     void apply_matrix(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads, std::span<const Real> z,
@@ -51,6 +51,12 @@ class ImplicitStep final : public StepMethod<Real> {
   private:
     struct Residual {
         double squared_norm = 0;
+    };
+    /// What Newton's iterations of a step go by.
+    struct Newton {
+        double reference = 0;   ///< of the residual
+        double potential = 0;   ///< incremental, where it is searched along a line
+        bool is_finite = true;  ///< all right-hand sides were
     };
     class Timer;
 
@@ -78,16 +84,31 @@ class ImplicitStep final : public StepMethod<Real> {
     /// Takes the new accelerations from the velocities.
     void end_newmark(Scheduler& scheduler, BodyMotion& motion);
     bool is_linear() const noexcept { return settings_.model == ElementModel::linear; }
+    bool is_at_state() const noexcept { return settings_.linearisation == Linearisation::state; }
+    /// A step that is linearised at the state is linearised once.
+    int iterations() const noexcept { return is_at_state() ? 1 : settings_.newton_iterations; }
+
+    /// Keeps what the step starts from, and evaluates the forces where it is first linearised.
+    void begin(Scheduler& scheduler, const StepSubject& subject, StepTotals& totals);
+    /// Forces, and where they have changed or `renew` asks for it, rotations; returns whether rotations are new.
+    bool evaluate(Scheduler& scheduler, const double* position, bool renew);
+    /// The matrix, unless it is as it was.
+    void assemble(Scheduler& scheduler, const BodyLoads& loads, bool rotated);
     void linearise(Scheduler& scheduler, const double* position, const BodyLoads& loads, bool renew);
+    /// The preconditioner, unless the matrix is as it was.
+    void refresh(Scheduler& scheduler, const BodyMotion& motion);
+    /// The first linear system: matrix, right-hand side and preconditioner.
+    void set_up_system(Scheduler& scheduler, const StepSubject& subject, StepTotals& totals);
+    /// Takes the solution of the last solve; false where Newton's iterations end by that.
+    bool accept(Scheduler& scheduler, const StepSubject& subject, bool is_first, StepReport& report,
+                StepTotals& totals);
+    /// Takes the solution of the first system, and goes on with Newton's iterations.
+    void iterate(Scheduler& scheduler, const StepSubject& subject, StepReport& report, StepTotals& totals);
+    void end(Scheduler& scheduler, const StepSubject& subject, StepReport& report, StepTotals& totals);
     Residual right_hand_side(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,
                              const ConstraintFilter& filter, const Linearised& how);
     ConjugateGradientResult solve(Scheduler& scheduler, const BodyMotion& motion, const ConstraintFilter& filter,
                                   StepReport& report);
-    /// Both are false if a right-hand side was not finite.
-    bool newton(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
-                StepReport& report, StepTotals& totals);
-    bool step_from_state(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                         const ConstraintFilter& filter, StepReport& report, StepTotals& totals);
     void safeguard(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, const ConstraintFilter& filter,
                    std::span<const double> before_hold, StepReport& report, StepTotals& totals);
     typename StepEnergy<Real>::Step step_under(const BodyLoads& loads) const noexcept;
@@ -128,6 +149,8 @@ class ImplicitStep final : public StepMethod<Real> {
     std::vector<double> partial_;
     std::array<double, 4> fall_{};  ///< what gravity alone adds to the velocity of a body that nothing holds
     typename StepEnergy<Real>::Inner inner_energy_;  ///< at the end of the last step
+    Newton newton_;
+    bool is_rotated_ = false;  ///< rotations are newer than the matrix
     bool energy_is_known_ = false;
     bool matrix_is_known_ = false;
     bool acceleration_is_known_ = false;

@@ -28,6 +28,14 @@ struct BodyLoads {
     double rayleigh_stiffness = 0;
 };
 
+/// What a step changes, and what it depends on.
+struct StepSubject {
+    BodyMotion& motion;
+    const BodyLoads& loads;
+    const ConstraintFilter& filter;
+    std::span<const double> before_hold;  ///< velocities before held nodes got theirs; empty if no node is held
+};
+
 /// How a body goes from one step to the next: what ImplicitStep and ExplicitStep have in common.
 template <class Real>
 class StepMethod {
@@ -37,11 +45,10 @@ class StepMethod {
     StepMethod& operator=(const StepMethod&) = delete;
     virtual ~StepMethod() = default;
 
-    /// Advances the motion by the settings' time step. `before_hold` are the velocities as they were before held nodes
-    /// got theirs, empty if no node is held.
-    virtual StepReport advance(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads,
-                               const ConstraintFilter& filter, std::span<const double> before_hold,
-                               StepTotals& totals) = 0;
+    /// One stage of a step; all of them, in their order and with the same subject, advance its motion by the settings'
+    /// time step. The report and the totals are complete after the last.
+    virtual void run(StepStage stage, Scheduler& scheduler, const StepSubject& subject, StepReport& report,
+                     StepTotals& totals) = 0;
 
     /// Kinetic and elastic energy of a motion, and that of its weight, zero at `rest_position`.
     virtual Energies energies(Scheduler& scheduler, const BodyMotion& motion, const BodyLoads& loads,

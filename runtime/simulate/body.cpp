@@ -32,6 +32,19 @@ void require_finite(std::span<const Point> values, const char* what) {
 
 }  // namespace
 
+std::string_view to_string(StepStage stage) noexcept {
+    switch (stage) {
+        case StepStage::forces:
+            return "forces";
+        case StepStage::matrix:
+            return "matrix";
+        case StepStage::solve:
+            return "solve";
+        default:
+            return "update";
+    }
+}
+
 template <class Real, class Accumulate>
 class BodyOf final : public DeformableBody {
   public:
@@ -72,8 +85,21 @@ class BodyOf final : public DeformableBody {
         if (is_explicit(settings.integrator) && !settings.force_time_step) require_stable_step(scheduler);
     }
 
-    StepReport step(Scheduler& scheduler) override {
-        return floor_.exists() ? step_above_floor(scheduler) : take_step(scheduler);
+    StepReport run(StepStage stage, Scheduler& scheduler) override {
+        if (stage == StepStage::forces) {
+            report_ = {};
+            if (floor_.exists()) {
+                let_go_of_floor(scheduler);
+                before_floor_ = motion_;
+            }
+            prepare_holds();
+        }
+        run_stage(stage, scheduler, report_);
+        if (stage == StepStage::update) {
+            if (floor_.exists()) repeat_above_floor(scheduler);
+            time_ += settings_.time_step;
+        }
+        return report_;
     }
 
     double critical_time_step(Scheduler& scheduler) override { return critical_time_step(scheduler, 1e-6); }
@@ -307,40 +333,39 @@ class BodyOf final : public DeformableBody {
         }
     }
 
-    StepReport take_step(Scheduler& scheduler) {
+    void prepare_holds() {
         holds_.prepare(numbering_, time_ + settings_.time_step);
-        if (!holds_.empty()) {
-            before_hold_ = motion_.velocity;
-            holds_.apply(motion_.position, motion_.velocity, settings_.time_step);
-        }
-        const StepReport report =
-            step_->advance(scheduler, motion_, loads_, holds_.filter(),
-                           holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_), totals_);
-        time_ += settings_.time_step;
-        return report;
+        if (holds_.empty()) return;
+        before_hold_ = motion_.velocity;
+        holds_.apply(motion_.position, motion_.velocity, settings_.time_step);
     }
 
-    /// Takes a step again and again, with the nodes that pass the floor held on it, until none does.
-    StepReport step_above_floor(Scheduler& scheduler) {
-        let_go_of_floor(scheduler);
-        before_floor_ = motion_;
-        const double time = time_;
-        StepReport report = take_step(scheduler);
+    void run_stage(StepStage stage, Scheduler& scheduler, StepReport& report) {
+        const StepSubject subject{
+            .motion = motion_,
+            .loads = loads_,
+            .filter = holds_.filter(),
+            .before_hold = holds_.empty() ? std::span<const double>() : std::span<const double>(before_hold_)};
+        step_->run(stage, scheduler, subject, report, totals_);
+    }
+
+    /// Takes the step again and again, with the nodes that pass the floor held on it, until none does.
+    void repeat_above_floor(Scheduler& scheduler) {
         while (floor_.add(numbering_, before_floor_.position, motion_.position)) {
             motion_ = before_floor_;
-            time_ = time;
             --totals_.steps;
-            totals_.lost -= report.lost ? 1 : 0;
+            totals_.lost -= report_.lost ? 1 : 0;
             holds_.set_contacts(floor_.contacts(), floor_.normal(), true);
             step_->forget();
-            const StepReport again = take_step(scheduler);
-            report.newton_iterations += again.newton_iterations;
-            report.conjugate_gradient_iterations += again.conjugate_gradient_iterations;
-            report.conjugate_gradient_residual = again.conjugate_gradient_residual;
-            report.repeated = report.repeated || again.repeated;
-            report.lost = again.lost;
+            StepReport again;
+            prepare_holds();
+            for (const StepStage stage : step_stages) run_stage(stage, scheduler, again);
+            report_.newton_iterations += again.newton_iterations;
+            report_.conjugate_gradient_iterations += again.conjugate_gradient_iterations;
+            report_.conjugate_gradient_residual = again.conjugate_gradient_residual;
+            report_.repeated = report_.repeated || again.repeated;
+            report_.lost = again.lost;
         }
-        return report;
     }
 
     /// Ends the contacts with the floor that would pull.
@@ -417,6 +442,7 @@ class BodyOf final : public DeformableBody {
     kernels::AlignedVector<double> before_hold_;
     kernels::AlignedVector<double> rest_position_;
     StepTotals totals_;
+    StepReport report_;  ///< of the step that is under way
     double time_ = 0;
 };
 

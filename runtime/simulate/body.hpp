@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "lancet/runtime/schedule/scheduler.hpp"
@@ -14,6 +15,17 @@
 namespace lancet::runtime {
 
 using mesh::Point;
+
+/// What a step consists of, in this order.
+enum class StepStage {
+    forces,  ///< holds and prediction; rotations and forces. Explicit integrators do all here
+    matrix,  ///< and right-hand side of the first linear system; what has not changed is kept
+    solve,   ///< conjugate gradients on it
+    update   ///< the new state; further iterations and repetitions, where there are any
+};
+inline constexpr std::array step_stages{StepStage::forces, StepStage::matrix, StepStage::solve, StepStage::update};
+/// "forces", "matrix", "solve" or "update".
+std::string_view to_string(StepStage stage) noexcept;
 
 /// How one step went.
 struct StepReport {
@@ -79,7 +91,15 @@ class DeformableBody {
   public:
     virtual ~DeformableBody() = default;
 
-    virtual StepReport step(Scheduler& scheduler) = 0;
+    /// Advances the body by the settings' time step.
+    StepReport step(Scheduler& scheduler) {
+        StepReport report;
+        for (const StepStage stage : step_stages) report = run(stage, scheduler);
+        return report;
+    }
+    /// One stage of a step, for programs that make each a task. Between the first and the last nothing else may be
+    /// asked of the body. The report is complete after the last.
+    virtual StepReport run(StepStage stage, Scheduler& scheduler) = 0;
 
     virtual std::size_t nodes() const noexcept = 0;
     virtual std::size_t elements() const noexcept = 0;
