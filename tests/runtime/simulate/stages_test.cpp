@@ -21,6 +21,7 @@ std::unique_ptr<DeformableBody> bar(Integrator integrator, bool has_floor, Sched
     }
     Settings settings;
     settings.integrator = integrator;
+    settings.energy_safeguard = integrator == Integrator::implicit_euler;
     settings.time_step = is_explicit(integrator) ? 1e-4 : 0.02;
     return make_body(scene, settings, scheduler);
 }
