@@ -1,28 +1,15 @@
 #include "lancet/mesh/io/read.hpp"
 
-#include <fstream>
 #include <optional>
-#include <system_error>
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/io/cursor.hpp"
+#include "lancet/mesh/io/load.hpp"
 #include "lancet/mesh/io/raw_mesh.hpp"
 
 namespace lancet::mesh {
 
 namespace {
-
-std::string load(const std::filesystem::path& path) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) throw Error(path.string() + ": is a folder; expected a mesh file");
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    const std::streamoff size = file ? std::streamoff(file.tellg()) : -1;
-    if (size < 0) throw Error(path.string() + ": cannot be opened for reading");
-    std::string content(static_cast<std::size_t>(size), '\0');
-    file.seekg(0);
-    if (!file.read(content.data(), size)) throw Error(path.string() + ": cannot be read to its end");
-    return content;
-}
 
 std::optional<MeshFormat> format_of_content(std::string_view content) {
     if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
@@ -75,11 +62,11 @@ ReadResult read_from_memory(MeshFormat format, std::string_view content, std::st
 ReadResult read(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string extension = io::lower(path.extension().string());
     const std::optional<MeshFormat> by_extension = format_of_extension(extension);
-    const std::string content = load(path);
+    const std::string content = io::load(path, "a mesh file");
     if (by_extension == MeshFormat::tetgen) {
         std::filesystem::path other = path;
         other.replace_extension(extension == ".node" ? ".ele" : ".node");
-        const std::string other_content = load(other);
+        const std::string other_content = io::load(other, "a mesh file");
         if (extension == ".node") {
             return read_tetgen_pair(content, path.string(), other_content, other.string(), options);
         }
