@@ -3,42 +3,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/mesh/generate/cell_tetrahedra.hpp"
 
 namespace lancet::mesh {
 
 namespace {
-
-using Corners = std::array<int, 4>;
-
-/// Six times the volume of corners of the unit cell.
-constexpr int determinant(const Corners& c) {
-    std::array<std::array<int, 3>, 3> e{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        for (int axis = 0; axis < 3; ++axis) e[row][axis] = ((c[row + 1] >> axis) & 1) - ((c[0] >> axis) & 1);
-    }
-    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) + e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
-}
-
-constexpr std::array<Corners, 5> even_cell{{{3, 5, 6, 0}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 3, 5, 6}}};
-constexpr std::array<Corners, 5> odd_cell{{{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}}};
-constexpr std::array<Corners, 6> kuhn_cell{
-    {{0, 1, 3, 7}, {0, 1, 7, 5}, {0, 2, 7, 3}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 7, 6}}};
-
-template <std::size_t Count>
-constexpr bool fills_cell(const std::array<Corners, Count>& cell) {
-    int sum = 0;
-    for (const Corners& corners : cell) {
-        if (determinant(corners) <= 0) return false;
-        sum += determinant(corners);
-    }
-    return sum == 6;
-}
-static_assert(fills_cell(even_cell) && fills_cell(odd_cell) && fills_cell(kuhn_cell));
 
 void check(const Box& box) {
     constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
@@ -110,9 +82,8 @@ TetMesh box(const Box& box) {
     for (int k = 0; k < nz; ++k) {
         for (int j = 0; j < ny; ++j) {
             for (int i = 0; i < nx; ++i) {
-                std::span<const Corners> cell = kuhn_cell;
-                if (box.split == Split::five) cell = ((i + j + k) % 2 == 0) != box.swap_parity ? even_cell : odd_cell;
-                for (const Corners& corners : cell) {
+                const bool is_even = ((i + j + k) % 2 == 0) != box.swap_parity;
+                for (const CellCorners& corners : cell_tetrahedra(box.split, is_even)) {
                     Tetrahedron& t = definition.tetrahedra.emplace_back();
                     for (std::size_t n = 0; n < 4; ++n) {
                         const int c = corners[n];
