@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <ostream>
 #include <span>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "lancet/experiments/bar/workers.hpp"
@@ -19,34 +17,9 @@
 namespace lancet::experiments::bar {
 namespace {
 
-/// 64-bit FNV-1a hash of everything that a solution depends on.
-class Hash {
-  public:
-    template <class Value>
-    void add(std::span<const Value> values) {
-        for (const std::byte byte : std::as_bytes(values)) {
-            value_ = (value_ ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
-        }
-    }
-    [[nodiscard]] std::string text() const {
-        std::array<char, 17> buffer{};
-        std::snprintf(buffer.data(), buffer.size(), "%016llx", static_cast<unsigned long long>(value_));
-        return buffer.data();
-    }
-
-  private:
-    std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 std::string key(const Problem& problem, const std::vector<double>& times) {
     Hash hash;
-    hash.add(problem.mesh.nodes());
-    hash.add(problem.mesh.tetrahedra());
-    hash.add(std::span<const std::int32_t>(problem.fixed_nodes));
-    const std::array numbers{problem.young_modulus, problem.poisson_ratio,      problem.density,
-                             problem.rayleigh_mass, problem.rayleigh_stiffness, problem.time_step};
-    hash.add(std::span<const double>(numbers));
-    hash.add(std::span<const double>(problem.gravity));
+    add_to(hash, problem);
     hash.add(std::span<const double>(times));
     return hash.text();
 }
@@ -92,6 +65,16 @@ std::vector<std::vector<double>> converged(ProblemOptions options, const std::ve
 }
 
 }  // namespace
+
+void add_to(Hash& hash, const Problem& problem) {
+    hash.add(problem.mesh.nodes());
+    hash.add(problem.mesh.tetrahedra());
+    hash.add(std::span<const std::int32_t>(problem.fixed_nodes));
+    const std::array numbers{problem.young_modulus, problem.poisson_ratio,      problem.density,
+                             problem.rayleigh_mass, problem.rayleigh_stiffness, problem.time_step};
+    hash.add(std::span<const double>(numbers));
+    hash.add(std::span<const double>(problem.gravity));
+}
 
 Reference make_reference(const ProblemOptions& options, const Problem& problem, const ReferenceChoice& choice,
                          const std::filesystem::path& folder, const std::filesystem::path& cache, Progress& progress) {

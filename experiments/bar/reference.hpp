@@ -4,6 +4,7 @@
 
 #include "lancet/experiments/bar/errors.hpp"
 #include "lancet/experiments/bar/problem.hpp"
+#include "lancet/experiments/common/hash.hpp"
 #include "lancet/experiments/common/progress.hpp"
 
 namespace lancet::experiments::bar {
@@ -21,6 +22,9 @@ struct ReferenceChoice {
 [[nodiscard]] Reference make_reference(const ProblemOptions& options, const Problem& problem,
                                        const ReferenceChoice& choice, const std::filesystem::path& folder,
                                        const std::filesystem::path& cache, Progress& progress);
+
+/// Adds all that a converged solution of `problem` depends on, but for the times it is asked at.
+void add_to(Hash& hash, const Problem& problem);
 
 /// Where references are kept by default: lancet/bar below $XDG_CACHE_HOME or $HOME/.cache.
 [[nodiscard]] std::filesystem::path default_cache();

@@ -9,13 +9,14 @@
 
 namespace lancet::experiments {
 
-/// What this machine can do at most on one thread; each limit is measured when it is first asked for.
+/// What this machine can do at most on the threads of a scheduler; each limit is measured when it is first asked for.
 class MachineLimits {
   public:
-    /// `scheduler` has one thread and must outlive this.
+    /// `scheduler` must outlive this.
     explicit MachineLimits(runtime::Scheduler& scheduler) : scheduler_(&scheduler) {}
 
-    /// Multiply-adds of one instruction set, in 1e9 operations a second: the best of several short runs.
+    /// Multiply-adds of one instruction set, in 1e9 operations a second: the best of several short runs, of all threads
+    /// together.
     template <class Real>
     double peak_gflops(kernels::InstructionSet instruction_set);
 

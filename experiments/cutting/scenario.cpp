@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "lancet/experiments/cutting/organ_mesh.hpp"
+#include "lancet/experiments/common/organ_mesh.hpp"
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/generate/box.hpp"
 #include "lancet/mesh/io/read.hpp"

@@ -1,11 +1,11 @@
-#include "lancet/experiments/cutting/organ_mesh.hpp"
+#include "lancet/experiments/common/organ_mesh.hpp"
 
 #include <cmath>
 #include <utility>
 
 #include "lancet/mesh/generate/cylinder.hpp"
 
-namespace lancet::experiments::cutting {
+namespace lancet::experiments {
 
 mesh::TetMesh organ_mesh(int rings, int layers) {
     // s along the rod in [-1, 1], (y, z) in the unit disc.
@@ -23,4 +23,4 @@ mesh::TetMesh organ_mesh(int rings, int layers) {
     return mesh::TetMesh(std::move(definition));
 }
 
-}  // namespace lancet::experiments::cutting
+}  // namespace lancet::experiments
