@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "lancet/experiments/bar/errors.hpp"
 #include "lancet/experiments/bar/problem.hpp"
@@ -22,6 +24,9 @@ struct ReferenceChoice {
 [[nodiscard]] Reference make_reference(const ProblemOptions& options, const Problem& problem,
                                        const ReferenceChoice& choice, const std::filesystem::path& folder,
                                        const std::filesystem::path& cache, Progress& progress);
+
+/// The options with which Lancet's workers solve every step to 1e-8 of the load, in double.
+[[nodiscard]] std::vector<std::string> converged_arguments();
 
 /// Adds all that a converged solution of `problem` depends on, but for the times it is asked at.
 void add_to(Hash& hash, const Problem& problem);

@@ -1,0 +1,49 @@
+#include "lancet/experiments/scaling/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "lancet/kernels/error.hpp"
+
+namespace lancet::experiments::scaling {
+namespace {
+
+/// The one list of the fields that are not those of bar::WorkerReport, for writing and reading.
+template <class Given, class Visit>
+void visit_fields(Given& report, const Visit& visit) {
+    visit("state", report.state);
+    visit("waited", report.load.waited);
+    visit("stolen", report.load.stolen);
+    visit("others", report.load.others);
+    visit("spin_seconds", report.load.spin_seconds);
+    visit("cores", report.cores);
+    visit("pinned_threads", report.pinned_threads);
+    visit("omp_wait_policy", report.omp_wait_policy);
+    visit("peak_gflops", report.peak_gflops);
+    visit("read_gbytes_per_s", report.read_gbytes_per_s);
+}
+
+}  // namespace
+
+std::string to_line(const Report& report) {
+    auto json = nlohmann::ordered_json::parse(bar::to_line(report.run));
+    visit_fields(report, [&json](const char* name, const auto& value) { json[name] = value; });
+    json["error_percent"] =
+        report.error_percent ? nlohmann::ordered_json(*report.error_percent) : nlohmann::ordered_json();
+    return json.dump();
+}
+
+Report report_from_line(const std::string& line, const std::string& worker) {
+    Report report;
+    report.run = bar::report_from_line(line, worker);
+    try {
+        const nlohmann::json json = nlohmann::json::parse(line);
+        visit_fields(report, [&json](const char* name, auto& value) { json.at(name).get_to(value); });
+        if (!json.at("error_percent").is_null()) report.error_percent = json.at("error_percent").get<double>();
+    } catch (const std::exception& error) {
+        throw Error(worker + ": '" + line.substr(0, 200) + "' printed, expected a report in JSON (" + error.what() +
+                    ")");
+    }
+    return report;
+}
+
+}  // namespace lancet::experiments::scaling
