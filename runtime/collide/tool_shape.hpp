@@ -30,6 +30,8 @@ using ToolShape = std::variant<SphereTool, CapsuleTool, ChainTool>;
 struct Pose {
     Point position{};
     std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+
+    friend bool operator==(const Pose&, const Pose&) = default;
 };
 
 /// Throws lancet::Error for a radius that is not positive, a chain without points, or what is not finite.

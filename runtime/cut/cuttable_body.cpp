@@ -156,7 +156,7 @@ void CuttableBody::set_point_loads(std::span<const PointLoad> loads) {
     apply_loads();
 }
 
-void CuttableBody::apply_loads() {
+std::vector<Point> CuttableBody::loads() const {
     std::vector<Point> loads = scene_loads_;
     for (const PointLoad& load : point_loads_) {
         const mesh::MaterialPoint point = mesh_.material_point(load.element, load.place);
@@ -167,7 +167,11 @@ void CuttableBody::apply_loads() {
             }
         }
     }
-    body_->set_loads(loads);
+    return loads;
+}
+
+void CuttableBody::apply_loads() {
+    body_->set_loads(loads());
 }
 
 Point CuttableBody::position(std::int32_t element, const mesh::Barycentric& place) const {

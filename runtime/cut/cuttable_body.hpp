@@ -68,6 +68,9 @@ class CuttableBody {
     /// Replaces the loads on points, beside the scene's own. They stay with their points through cuts to come.
     void set_point_loads(std::span<const PointLoad> loads);
 
+    /// What loads the nodes of the body now: the scene's own, and those on points.
+    std::vector<Point> loads() const;
+
     /// Where a point of the material is now.
     Point position(std::int32_t element, const mesh::Barycentric& place) const;
 

@@ -112,6 +112,10 @@ class BodyOf final : public DeformableBody {
         time_ = time;
     }
     void positions(std::span<Point> out) const override { gather_to_user(motion_.position, out); }
+    Point position(std::int32_t node) const override {
+        const std::size_t at = 4 * static_cast<std::size_t>(internal_node(node));
+        return {motion_.position[at], motion_.position[at + 1], motion_.position[at + 2]};
+    }
     void velocities(std::span<Point> out) const override { gather_to_user(motion_.velocity, out); }
 
     void set_positions(std::span<const Point> positions) override {

@@ -107,6 +107,7 @@ class DeformableBody {
     /// Sets the clock by which prescribed displacements go, in seconds.
     virtual void set_time(double time) = 0;
     virtual void positions(std::span<Point> out) const = 0;
+    virtual Point position(std::int32_t node) const = 0;
     virtual void velocities(std::span<Point> out) const = 0;
     /// Moves the body; rotations start anew from where they are. Fixed nodes keep their places.
     virtual void set_positions(std::span<const Point> positions) = 0;

@@ -1,0 +1,158 @@
+#include "lancet/runtime/simulate/simulated_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lancet/kernels/error.hpp"
+#include "lancet/runtime/cut/divided_scene.hpp"
+#include "lancet/runtime/simulate/loads.hpp"
+
+namespace lancet::runtime {
+
+namespace {
+
+int whole_steps(const BodyDefinition& definition, double world_step) {
+    const double ratio = world_step / definition.settings.time_step;
+    const double steps = std::round(ratio);
+    if (!(steps >= 1) || std::abs(ratio - steps) > 1e-9 * steps) {
+        throw Error("body '" + definition.name + "': the world's step of " + std::to_string(world_step) +
+                    " s is not a whole multiple of its time step of " + std::to_string(definition.settings.time_step) +
+                    " s");
+    }
+    return static_cast<int>(steps);
+}
+
+}  // namespace
+
+SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const std::array<double, 3>& gravity,
+                             const SleepOptions& sleep, Scheduler& scheduler)
+    : definition_(std::move(definition)), sleep_(sleep), steps_per_world_step_(whole_steps(definition_, world_step)) {
+    definition_.scene.gravity = gravity;
+    if (definition_.can_be_cut) {
+        cuttable_ =
+            std::make_unique<CuttableBody>(definition_.scene, definition_.settings, scheduler, definition_.cuts);
+    } else {
+        body_ = make_body(definition_.scene, definition_.settings, scheduler);
+    }
+    scene_loads_ = external_loads(definition_.scene);
+    find_mean_mass();
+}
+
+void SimulatedBody::find_mean_mass() {
+    double mass = 0;
+    for (std::size_t node = 0; node < body().nodes(); ++node) {
+        mass += body().nodal_mass(static_cast<std::int32_t>(node));
+    }
+    mean_mass_ = mass / static_cast<double>(body().nodes());
+}
+
+void SimulatedBody::run(StepStage stage, Scheduler& scheduler) {
+    if (!is_asleep_) body().run(stage, scheduler);
+}
+
+CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip) {
+    const CutUpdate update = blade.draw(*cuttable_, scheduler, heel, tip);
+    if (update.mesh.touched_elements > 0) {
+        ++cuts_;
+        scene_loads_ = cuttable_->loads();
+        find_mean_mass();
+        wake();
+    }
+    return update;
+}
+
+void SimulatedBody::renew_surface() {
+    auto surface = std::make_shared<CarriedSurface>(cuttable_ && cuts_ > 0 ? boundary_surface(cuttable_->mesh())
+                                                                           : boundary_surface(definition_.scene.mesh));
+    surface->version = surface_ ? surface_->version + 1 : 0;
+    surface_ = std::move(surface);
+    surface_cuts_ = cuts_;
+}
+
+void SimulatedBody::clear_forces() {
+    had_forces_ = has_forces_;
+    has_forces_ = false;
+    if (had_forces_ || loads_.size() != scene_loads_.size()) loads_ = scene_loads_;
+}
+
+void SimulatedBody::add_force(const SurfacePoint& point, const Point& force) {
+    if (force == Point{}) return;
+    has_forces_ = true;
+    wake();
+    for_each_node(point, [&](std::int32_t node, double weight) {
+        Point& load = loads_[static_cast<std::size_t>(node)];
+        for (std::size_t axis = 0; axis < 3; ++axis) load[axis] += weight * force[axis];
+    });
+}
+
+void SimulatedBody::apply_forces() {
+    if (has_forces_ || had_forces_) body().set_loads(loads_);
+}
+
+Point SimulatedBody::position(const SurfacePoint& point) const {
+    Point at{};
+    for_each_node(point, [&](std::int32_t node, double weight) {
+        const Point of_node = body().position(node);
+        for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += weight * of_node[axis];
+    });
+    return at;
+}
+
+void SimulatedBody::stiffen(std::span<ToolSpring> springs, double h) {
+    double mass = 0;
+    for (std::size_t node = 0; node < body().nodes(); ++node)
+        mass += body().nodal_mass(static_cast<std::int32_t>(node));
+    const double stiffness = mass / static_cast<double>(body().nodes()) / (2 * h * h);
+    shares_.resize(body().nodes());
+    for (ToolSpring& spring : springs) {
+        spring.stiffness = spring.share * stiffness;
+        for_each_node(spring.on_body, [&](std::int32_t node, double) { shares_[static_cast<std::size_t>(node)] = 0; });
+    }
+    // k w w^T <= k diag |w| for weights of sum 1: what all springs together do to a node.
+    for (const ToolSpring& spring : springs) {
+        for_each_node(spring.on_body, [&](std::int32_t node, double weight) {
+            shares_[static_cast<std::size_t>(node)] += std::abs(weight) * spring.stiffness;
+        });
+    }
+    for (ToolSpring& spring : springs) {
+        double factor = 1;
+        for_each_node(spring.on_body, [&](std::int32_t node, double) {
+            const double most = 2 * body().nodal_mass(node) / (h * h), sum = shares_[static_cast<std::size_t>(node)];
+            if (sum > most) factor = std::min(factor, most / sum);
+        });
+        spring.stiffness *= factor;
+    }
+}
+
+void SimulatedBody::publish(std::int64_t step, double time) {
+    MotionSnapshot* snapshot = snapshots_.begin();
+    if (snapshot == nullptr) return;
+    snapshot->surface = surface_;
+    snapshot->step = step;
+    snapshot->time = time;
+    snapshot->positions.resize(body().nodes());
+    body().positions(snapshot->positions);
+    snapshots_.publish();
+}
+
+void SimulatedBody::rest(double world_step) {
+    // What is prescribed in time goes on by itself.
+    if (!(sleep_.speed > 0) || is_asleep_ || !definition_.scene.prescribed.empty()) return;
+    velocities_.resize(body().nodes());
+    body().velocities(velocities_);
+    double square = 0;
+    for (const Point& v : velocities_) square = std::max(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    rested_ = square < sleep_.speed * sleep_.speed ? rested_ + world_step : 0;
+    if (rested_ < sleep_.after) return;
+    is_asleep_ = true;
+    std::ranges::fill(velocities_, Point{});
+    body().set_velocities(velocities_);
+}
+
+void SimulatedBody::wake() noexcept {
+    rested_ = 0;
+    is_asleep_ = false;
+}
+
+}  // namespace lancet::runtime

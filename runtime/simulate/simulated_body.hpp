@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lancet/runtime/cut/blade.hpp"
+#include "lancet/runtime/cut/cuttable_body.hpp"
+#include "lancet/runtime/simulate/snapshots.hpp"
+#include "lancet/runtime/simulate/surface.hpp"
+#include "lancet/runtime/simulate/tool_spring.hpp"
+
+namespace lancet::runtime {
+
+/// A body of a simulation, as it is described to it.
+struct BodyDefinition {
+    std::string name{};  ///< of its tasks; distinct
+    Scene scene{};       ///< its gravity is that of the world
+    Settings settings{};
+    bool can_be_cut = false;  ///< without it nothing of cutting is kept or run
+    CutOptions cuts{};
+};
+
+/// When a body that hardly moves is not computed any more. It wakes by a load, a touch or a cut.
+struct SleepOptions {
+    double speed = 0;    ///< m / s: of the fastest node; 0: bodies do not sleep
+    double after = 0.5;  ///< s of such rest
+};
+
+/// The motion of a body as it was at some time, for tasks that run while the body goes on.
+struct MotionSnapshot {
+    std::shared_ptr<const CarriedSurface> surface;  ///< empty where nobody asks for it
+    std::int64_t step = 0;
+    double time = 0;
+    std::vector<Point> positions;  ///< [node of the body]
+};
+
+/// A body among others: whatever its method, it is stepped, cut, pushed and looked at in the same way.
+class SimulatedBody {
+  public:
+    /// Throws lancet::Error where the world's time step is not a whole multiple of the body's, and as make_body does.
+    SimulatedBody(BodyDefinition definition, double world_step, const std::array<double, 3>& gravity,
+                  const SleepOptions& sleep, Scheduler& scheduler);
+
+    const std::string& name() const noexcept { return definition_.name; }
+    bool can_be_cut() const noexcept { return cuttable_ != nullptr; }
+    bool has_system() const noexcept { return !is_explicit(definition_.settings.integrator); }
+    int steps_per_world_step() const noexcept { return steps_per_world_step_; }
+
+    DeformableBody& body() noexcept { return cuttable_ ? cuttable_->body() : *body_; }
+    const DeformableBody& body() const noexcept { return cuttable_ ? cuttable_->body() : *body_; }
+    /// nullptr for a body that cannot be cut.
+    CuttableBody* cuttable() noexcept { return cuttable_.get(); }
+    const CuttableBody* cuttable() const noexcept { return cuttable_.get(); }
+
+    /// One stage of one step; nothing while asleep.
+    void run(StepStage stage, Scheduler& scheduler);
+
+    /// Draws a tool's blade to where it is now.
+    CutUpdate draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip);
+    /// Whether cuts have changed the surface since it was made.
+    bool surface_is_old() const noexcept { return surface_cuts_ != cuts_; }
+    std::int64_t cuts() const noexcept { return cuts_; }
+    /// Makes the surface as cuts have left it.
+    void renew_surface();
+    std::shared_ptr<const CarriedSurface> surface() const noexcept { return surface_; }
+
+    /// Starts collecting forces for the next step.
+    void clear_forces();
+    /// A force on a point of the surface. Wakes the body.
+    void add_force(const SurfacePoint& point, const Point& force);
+    /// Hands the collected forces to the body, beside the loads of its scene.
+    void apply_forces();
+
+    /// Where a point of the surface is.
+    Point position(const SurfacePoint& point) const;
+    /// Calls visit(node, weight) for what a point of the surface hangs on; nodes may repeat.
+    template <class Visit>
+    void for_each_node(const SurfacePoint& point, const Visit& visit) const {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            if (point.weights[corner] == 0) continue;
+            const mesh::Tetrahedron& nodes = nodes_of(point.corners[corner].part);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const double weight = point.weights[corner] * point.corners[corner].weights[k];
+                if (weight != 0) visit(nodes[k], weight);
+            }
+        }
+    }
+    /// Sets the stiffness of springs of a tool on this body. With a force that is constant over steps of length h, a
+    /// spring k on a mass m is stable for k < 4 m / h^2 (symplectic Euler). Each gets its share of m / (2 h^2) with the
+    /// mean mass m of the nodes, so that a tool that slides feels nothing of the mesh; but where all together would
+    /// come to more than 2 m_i / h^2 at a node, they get less.
+    void stiffen(std::span<ToolSpring> springs, double h);
+
+    /// Takes a snapshot of the motion: what latest() returns until the next.
+    void publish(std::int64_t step, double time);
+    Snapshots<MotionSnapshot>::Reader latest() noexcept { return snapshots_.latest(); }
+    Snapshots<SurfaceShape>& shapes() noexcept { return shapes_; }
+
+    /// Falls asleep, or counts towards it, after a world step.
+    void rest(double world_step);
+    void wake() noexcept;
+    bool is_asleep() const noexcept { return is_asleep_; }
+
+  private:
+    void find_mean_mass();
+    const mesh::Tetrahedron& nodes_of(std::int32_t part) const {
+        return cuttable_ ? cuttable_->mesh().parts()[static_cast<std::size_t>(part)]
+                         : definition_.scene.mesh.tetrahedra()[static_cast<std::size_t>(part)];
+    }
+
+    BodyDefinition definition_;
+    SleepOptions sleep_;
+    int steps_per_world_step_ = 1;
+    std::unique_ptr<DeformableBody> body_;
+    std::unique_ptr<CuttableBody> cuttable_;
+    std::shared_ptr<const CarriedSurface> surface_;
+    std::int64_t cuts_ = 0;           ///< that have changed something
+    std::int64_t surface_cuts_ = -1;  ///< that the surface shows
+    std::vector<Point> scene_loads_;  ///< [node of the body]
+    std::vector<Point> loads_;
+    bool has_forces_ = false, had_forces_ = false;
+    double mean_mass_ = 0;        ///< of the nodes, kg
+    std::vector<double> shares_;  ///< [node] of springs, while they are stiffened
+    Snapshots<MotionSnapshot> snapshots_;
+    Snapshots<SurfaceShape> shapes_;
+    std::vector<Point> velocities_;  ///< where bodies may sleep
+    double rested_ = 0;              ///< s
+    bool is_asleep_ = false;
+};
+
+}  // namespace lancet::runtime

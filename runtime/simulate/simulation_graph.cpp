@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <utility>
+
+#include "lancet/runtime/observe/clock.hpp"
+#include "lancet/runtime/simulate/simulation.hpp"
+
+namespace lancet::runtime {
+
+StepGraph::Task Simulation::add_task(const std::string& name, std::function<void()> body) {
+    auto known = std::ranges::find(statistics_, name, &TaskStatistics::name);
+    if (known == statistics_.end()) known = statistics_.insert(statistics_.end(), TaskStatistics{.name = name});
+    const int number = static_cast<int>(known - statistics_.begin());
+    TaskStatistics& statistics = *known;
+    return graph_.task(name, [this, &statistics, number, body = std::move(body)] {
+        const double begin = steady_seconds();
+        body();
+        const double end = steady_seconds();
+        ++statistics.runs;
+        statistics.seconds += end - begin;
+        statistics.longest = std::max(statistics.longest, end - begin);
+        if (task_observer_ != nullptr) task_observer_->ended(number, statistics.name, begin, end);
+    });
+}
+
+StepGraph::Task Simulation::add_steps(int number, const std::optional<Task>& before) {
+    SimulatedBody& body = this->body(number);
+    std::optional<Task> last = before;
+    const auto add = [&](const std::string& what, std::function<void()> run) {
+        const Task task = add_task(body.name() + ": " + what, std::move(run));
+        if (last) last->precede(task);
+        last = task;
+    };
+    const int steps = body.steps_per_world_step();
+    for (int step = 1; step <= steps; ++step) {
+        const std::string of = steps == 1 ? "" : " " + std::to_string(step);
+        if (!body.has_system()) {
+            add("step" + of, [this, &body] {
+                for (const StepStage stage : step_stages) body.run(stage, *scheduler_);
+            });
+            continue;
+        }
+        for (const StepStage stage : step_stages) {
+            add(std::string(to_string(stage)) + of, [this, &body, stage] { body.run(stage, *scheduler_); });
+        }
+    }
+    return *last;
+}
+
+void Simulation::build_graph() {
+    graph_ = StepGraph();
+    const bool has_tools = !tools_.empty();
+    const bool has_snapshots = has_surfaces() || has_tools;
+    before_.resize(bodies_.size());
+
+    std::optional<Task> input, collision, forces, feedback, frame;
+    if (has_tools) {
+        input = add_task("input", [this] { take_input(); });
+        forces = add_task("tool forces", [this] { push_bodies(); });
+        input->precede(*forces);
+        feedback = add_task("force feedback", [this] { feel(); });
+        if (collision_rate_.ever()) {
+            collision = add_task("collision", [this] { find_contacts(); });
+            input->precede(*collision);
+            if (!options_.overlap) collision->precede(*forces);
+        }
+    }
+    if (frame_thread_ != nullptr) frame = add_task("frame", [this] { make_frame(); });
+    for (std::size_t number = 0; number < bodies_.size(); ++number) {
+        SimulatedBody& body = *bodies_[number];
+        std::optional<Task> renewal;
+        if (body.can_be_cut() && has_blade()) {
+            const Task cutting = add_task(body.name() + ": cut", [this, &body, number] { cut(body, number); });
+            input->precede(cutting);
+            cutting.precede(*forces);
+            renewal = add_task(body.name() + ": surface renewal", [&body] {
+                if (body.surface_is_old()) body.renew_surface();
+            });
+            cutting.precede(*renewal);
+        }
+        const Task last = add_steps(static_cast<int>(number), forces);
+        if (feedback) last.precede(*feedback);
+        if (!has_snapshots && !(options_.sleep.speed > 0)) continue;
+        if (has_snapshots) {
+            if (body.surface() == nullptr) body.renew_surface();
+            body.publish(steps_, time());
+        }
+        const Task snapshot = add_task(body.name() + ": snapshot", [this, &body, has_snapshots] {
+            body.rest(options_.time_step);
+            if (has_snapshots) body.publish(steps_ + 1, time() + options_.time_step);
+        });
+        last.precede(snapshot);
+        if (renewal) renewal->precede(snapshot);
+        if (!has_surfaces()) continue;
+        const Task surface = add_task(body.name() + ": surface", [this, number] { evaluate_surface(number); });
+        if (!options_.overlap) snapshot.precede(surface);
+        if (frame) surface.precede(*frame);
+    }
+    if (input && frame) input->precede(*frame);
+    graph_.validate();
+    graph_is_old_ = false;
+}
+
+}  // namespace lancet::runtime

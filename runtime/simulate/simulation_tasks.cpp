@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lancet/runtime/observe/clock.hpp"
+#include "lancet/runtime/simulate/simulation.hpp"
+
+namespace lancet::runtime {
+
+void Simulation::take_input() {
+    const double begin = time(), end = time() + options_.time_step;
+    for (const auto& tool : tools_) {
+        tool->samples.clear();
+        tool->before = tool->now;
+        if (!tool->path.empty()) {
+            // A sample at the very end of the step belongs to it, whatever the rounding of the sum of steps.
+            const double last = end + 1e-9 * options_.time_step;
+            while (tool->played < tool->path.size() && tool->path[tool->played].time <= last) {
+                tool->samples.push_back(tool->path[tool->played++]);
+            }
+        } else {
+            for (ToolSample sample; tool->queue.pop(sample);) tool->samples.push_back(sample);
+            const auto count = static_cast<double>(tool->samples.size());
+            for (std::size_t k = 0; k < tool->samples.size(); ++k) {
+                tool->samples[k].time = begin + (end - begin) * static_cast<double>(k + 1) / count;
+            }
+        }
+        if (tool->definition.is_recorded) {
+            tool->recorded.insert(tool->recorded.end(), tool->samples.begin(), tool->samples.end());
+        }
+        if (tool->samples.empty()) continue;
+        tool->now = tool->samples.back();
+        tool->is_placed = true;
+        tool->axis.resize(segments(tool->definition.shape));
+        place_axis(tool->definition.shape, tool->now.pose, tool->axis);
+    }
+}
+
+void Simulation::cut(SimulatedBody& body, std::size_t number) {
+    for (const auto& tool : tools_) {
+        if (!tool->definition.blade || !tool->is_placed) continue;
+        while (tool->blades.size() < bodies_.size()) tool->blades.emplace_back();
+        Blade& blade = tool->blades[number];
+        for (const ToolSample& sample : tool->samples) {
+            if (sample.action != ToolAction::cut) {
+                blade.lift();
+                continue;
+            }
+            const auto& [heel, tip] = *tool->definition.blade;
+            const double start = steady_seconds();
+            const CutUpdate update = body.draw(blade, *scheduler_, place(sample.pose, heel), place(sample.pose, tip));
+            if (update.mesh.touched_elements == 0) continue;
+            const double seconds = steady_seconds() - start;
+            ++cut_statistics_.cuts;
+            cut_statistics_.elements += update.mesh.divided_elements;
+            cut_statistics_.copies += update.mesh.new_copies;
+            cut_statistics_.seconds += seconds;
+            cut_statistics_.longest = std::max(cut_statistics_.longest, seconds);
+        }
+    }
+}
+
+void Simulation::stiffen_contacts(Tool& tool) {
+    // Contacts are found body by body.
+    for (auto begin = tool.contacts.begin(); begin != tool.contacts.end();) {
+        const auto end =
+            std::find_if(begin, tool.contacts.end(), [&](const ToolSpring& s) { return s.body != begin->body; });
+        if (begin->stiffness == 0) {
+            bodies_[static_cast<std::size_t>(begin->body)]->stiffen(std::span(begin, end), options_.time_step);
+        }
+        begin = end;
+    }
+}
+
+void Simulation::push_bodies() {
+    for (const auto& body : bodies_) body->clear_forces();
+    for (const auto& tool : tools_) {
+        if (!tool->is_placed) continue;
+        if (tool->now.action != ToolAction::grab) {
+            tool->grabs.clear();
+        } else if (tool->grabs.empty()) {
+            take_hold(*tool);
+        }
+        stiffen_contacts(*tool);
+        for (const auto* springs : {&tool->grabs, &tool->contacts}) {
+            for (const ToolSpring& spring : *springs) {
+                SimulatedBody& body = *bodies_[static_cast<std::size_t>(spring.body)];
+                const Point on_tool = place(tool->now.pose, spring.on_tool);
+                Point force = force_on_tool(spring, on_tool, body.position(spring.on_body));
+                for (double& value : force) value = -value;
+                body.add_force(spring.on_body, force);
+            }
+        }
+    }
+    for (const auto& body : bodies_) body->apply_forces();
+}
+
+void Simulation::evaluate_surface(std::size_t number) {
+    if (!frame_is_due_) return;
+    Snapshots<MotionSnapshot>::Reader reader;
+    const MotionSnapshot* snapshot = seen(number, reader);
+    SurfaceShape* shape = snapshot == nullptr ? nullptr : bodies_[number]->shapes().begin();
+    if (shape == nullptr) return;
+    shape->surface = snapshot->surface;
+    shape->step = snapshot->step;
+    shape->time = snapshot->time;
+    evaluate(*scheduler_, *snapshot->surface, snapshot->positions, *shape);
+    bodies_[number]->shapes().publish();
+}
+
+void Simulation::make_frame() {
+    if (!frame_is_due_) return;
+    const std::int64_t number = frames_due_++;
+    if (options_.frames == FramePolicy::wait) frame_thread_->wait();
+    Frame* frame = frame_thread_->begin();
+    if (frame == nullptr) {
+        ++frames_dropped_;
+        return;
+    }
+    frame->number = number;
+    frame->bodies.resize(bodies_.size());
+    for (std::size_t body = 0; body < bodies_.size(); ++body) {
+        if (const auto shape = bodies_[body]->shapes().latest()) {
+            frame->bodies[body] = *shape;
+            frame->step = shape->step;
+            frame->time = shape->time;
+        }
+    }
+    frame->input_stamp = 0;
+    frame->tools.clear();
+    for (const auto& tool : tools_) {
+        frame->tools.push_back(options_.overlap ? tool->before : tool->now);
+        frame->input_stamp = std::max(frame->input_stamp, frame->tools.back().stamp);
+    }
+    frame_thread_->submit();
+}
+
+void Simulation::feel() {
+    for (const auto& tool : tools_) {
+        ForceModel* model = tool->forces.begin();
+        if (model == nullptr) continue;
+        model->step = steps_ + 1;
+        model->time = time() + options_.time_step;
+        model->input_stamp = tool->now.stamp;
+        model->anchors.clear();
+        for (const auto* springs : {&tool->grabs, &tool->contacts}) {
+            for (const ToolSpring& spring : *springs) {
+                const SimulatedBody& body = *bodies_[static_cast<std::size_t>(spring.body)];
+                model->anchors.push_back({spring, body.position(spring.on_body)});
+            }
+        }
+        tool->forces.publish();
+    }
+}
+
+const MotionSnapshot* Simulation::seen(std::size_t body, Snapshots<MotionSnapshot>::Reader& reader) {
+    if (options_.overlap) return before_[body] ? &*before_[body] : nullptr;
+    reader = bodies_[body]->latest();
+    return reader ? &*reader : nullptr;
+}
+
+}  // namespace lancet::runtime

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <utility>
+
+#include "lancet/runtime/collide/vector3.hpp"
+#include "lancet/runtime/simulate/simulation.hpp"
+
+namespace lancet::runtime {
+
+namespace {
+
+/// Where a place is in the frame of a pose: R is orthogonal, its inverse the conjugate quaternion.
+Point local(const Pose& pose, const Point& place) {
+    const auto& [w, x, y, z] = pose.orientation;
+    return runtime::place({.position = {}, .orientation = {w, -x, -y, -z}}, subtract(place, pose.position));
+}
+
+SurfacePoint point_of(const CarriedSurface& surface, const ToolContact& contact) {
+    SurfacePoint point{.weights = contact.weights};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto vertex =
+            static_cast<std::size_t>(surface.triangles[static_cast<std::size_t>(contact.triangle)][corner]);
+        point.corners[corner] = {surface.parts[vertex], surface.weights[vertex]};
+    }
+    return point;
+}
+
+}  // namespace
+
+void Simulation::take_hold(Tool& tool) {
+    const double reach = tool.definition.grab_distance;
+    for (std::size_t number = 0; number < bodies_.size(); ++number) {
+        if (!before_[number]) continue;
+        SimulatedBody& body = *bodies_[number];
+        const CarriedSurface& surface = *before_[number]->surface;
+        const auto begin = static_cast<std::ptrdiff_t>(tool.grabs.size());
+        for (std::size_t vertex = 0; vertex < surface.parts.size(); ++vertex) {
+            ToolSpring spring{.body = static_cast<int>(number)};
+            spring.on_body.corners[0] = {surface.parts[vertex], surface.weights[vertex]};
+            const Point at = body.position(spring.on_body);
+            if (tool_distance(tool.axis, radius(tool.definition.shape), at).distance > reach) continue;
+            spring.on_tool = local(tool.now.pose, at);
+            tool.grabs.push_back(spring);
+        }
+        body.stiffen(std::span(tool.grabs).subspan(static_cast<std::size_t>(begin)), options_.time_step);
+    }
+}
+
+void Simulation::find_contacts() {
+    for (const auto& tool : tools_) {
+        std::vector<ToolSpring>& found = options_.overlap ? tool->found : tool->contacts;
+        if (!collision_is_due_) {
+            // What was found last still holds.
+            if (options_.overlap) tool->found = tool->contacts;
+            continue;
+        }
+        found.clear();
+    }
+    if (!collision_is_due_) return;
+    while (touchable_.size() < bodies_.size()) touchable_.emplace_back(options_.broad_phase);
+    for (const auto& tool : tools_) {
+        if (tool->is_placed)
+            tool->motion.set(tool->definition.shape, tool->tested.value_or(tool->now.pose), tool->now.pose);
+    }
+    for (std::size_t number = 0; number < bodies_.size(); ++number) {
+        Snapshots<MotionSnapshot>::Reader reader;
+        const MotionSnapshot* snapshot = seen(number, reader);
+        if (snapshot == nullptr) continue;
+        const CarriedSurface& surface = *snapshot->surface;
+        touchable_[number].update(*scheduler_, surface, snapshot->positions);
+        for (const auto& tool : tools_) {
+            if (!tool->is_placed) continue;
+            std::vector<ToolSpring>& found = options_.overlap ? tool->found : tool->contacts;
+            for (const ToolContact& contact : touchable_[number].contacts(surface, tool->motion)) {
+                // The tool's point is so far behind the surface as the contact is deep.
+                const Point deepest = add_scaled(contact.place, -contact.depth, contact.normal);
+                found.push_back({.body = static_cast<int>(number),
+                                 .on_body = point_of(surface, contact),
+                                 .on_tool = local(tool->now.pose, deepest),
+                                 .normal = contact.normal,
+                                 .share = contact.share});
+            }
+        }
+    }
+    for (const auto& tool : tools_) {
+        if (tool->is_placed) tool->tested = tool->now.pose;
+    }
+}
+
+}  // namespace lancet::runtime
