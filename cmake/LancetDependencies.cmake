@@ -30,6 +30,7 @@ if(NOT LANCET_KERNELS_ONLY)
 
   if(LANCET_BUILD_EXPERIMENTS OR LANCET_BUILD_BENCHMARKS)
     find_package(CLI11 2.1 REQUIRED)
+    find_package(embree 3.13 REQUIRED)
   endif()
   if(LANCET_BUILD_BENCHMARKS)
     find_package(benchmark 1.7 REQUIRED)
