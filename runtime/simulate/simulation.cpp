@@ -156,9 +156,9 @@ Snapshots<SurfaceShape>::Reader Simulation::latest_surface(int body) {
     return this->body(body).shapes().latest();
 }
 
-ForceModel::Wrench Simulation::force(int tool, const Pose& pose) {
+Wrench Simulation::force(int tool, const Pose& pose) {
     const auto model = latest_forces(tool);
-    return model ? model->at(pose) : ForceModel::Wrench{};
+    return model ? model->at(pose) : Wrench{};
 }
 
 Snapshots<ForceModel>::Reader Simulation::latest_forces(int tool) {

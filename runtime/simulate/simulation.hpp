@@ -120,7 +120,7 @@ class Simulation {
     /// The latest surface; empty before the first. From any thread.
     Snapshots<SurfaceShape>::Reader latest_surface(int body);
     /// The force on a tool at a pose, by the model of the last step; zero before the first. From any thread.
-    ForceModel::Wrench force(int tool, const Pose& pose);
+    Wrench force(int tool, const Pose& pose);
     /// The model itself; empty before the first. From any thread.
     Snapshots<ForceModel>::Reader latest_forces(int tool);
 

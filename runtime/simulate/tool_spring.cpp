@@ -18,7 +18,7 @@ Point force_on_tool(const ToolSpring& spring, const Point& on_tool, const Point&
     return force;
 }
 
-ForceModel::Wrench ForceModel::at(const Pose& pose) const noexcept {
+Wrench ForceModel::at(const Pose& pose) const noexcept {
     Wrench wrench;
     for (const Anchor& anchor : anchors) {
         const Point on_tool = place(pose, anchor.spring.on_tool);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lancet/runtime/collide/tool_shape.hpp"
+#include "lancet/runtime/collide/response.hpp"
 #include "lancet/runtime/simulate/surface.hpp"
 
 namespace lancet::runtime {
@@ -38,10 +38,6 @@ struct ForceModel {
     std::vector<Anchor> anchors;
 
     /// The force on the tool at a pose, and its moment about the tool's position. Allocates nothing.
-    struct Wrench {
-        Point force{};   ///< N
-        Point moment{};  ///< N m
-    };
     Wrench at(const Pose& pose) const noexcept;
 };
 
