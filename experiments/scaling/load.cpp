@@ -75,9 +75,9 @@ double lost_share(const Load& load, double shortest_spin_seconds, bool is_oversu
     return std::max(load.waited + load.stolen, slowed);
 }
 
-LoadMark judge(std::span<const double> lost) {
+LoadMark judge(std::span<const double> lost, int enough) {
     const auto quiet = std::ranges::count_if(lost, [](double share) { return share < loaded_from; });
-    if (2 * static_cast<std::size_t>(quiet) >= lost.size()) return LoadMark::quiet;
+    if (quiet >= enough) return LoadMark::quiet;
     return median(lost) < meaningless_from ? LoadMark::loaded : LoadMark::meaningless;
 }
 
@@ -95,8 +95,9 @@ std::string describe_load_rule() {
            "had its core, or the share by which a fixed piece of arithmetic before and after it ran slower than at its "
            "fastest, whichever is more (with more threads than cores: the share of the cores that others kept busy). A "
            "row is the median of the repetitions that lost less than " +
-           low + " %; where these are not half of them, it is the median of all and 'loaded', and from " + high +
-           " % on 'meaningless': no speed-up is formed with it.";
+           low +
+           " %; where these are fewer than half of those asked for, it is the median of all and 'loaded', and from " +
+           high + " % on 'meaningless': no speed-up is formed with it.";
 }
 
 std::optional<CoreTimes> core_times(const std::string& text, double ticks_per_second) {

@@ -28,15 +28,20 @@ struct Load {
 
 /// What the load makes of a row.
 enum class LoadMark {
-    quiet,       ///< at least half of the repetitions have lost less than loaded_from: the row is the median of these
+    quiet,       ///< enough repetitions have lost less than loaded_from: the row is the median of these
     loaded,      ///< else; the row is the median of all
     meaningless  ///< else, and the median repetition has lost meaningless_from or more: no speed-up is formed with it
 };
 constexpr double loaded_from = 0.05;
 constexpr double meaningless_from = 0.25;
 
+/// Repetitions that are enough: half of those asked for.
+[[nodiscard]] constexpr int enough_quiet(int repetitions) {
+    return (repetitions + 1) / 2;
+}
+
 /// The mark of a row whose repetitions have lost these shares; there must be one or more.
-[[nodiscard]] LoadMark judge(std::span<const double> lost);
+[[nodiscard]] LoadMark judge(std::span<const double> lost, int enough);
 /// Whether a repetition counts in a row with that mark.
 [[nodiscard]] bool counts(LoadMark mark, double lost);
 /// "", "loaded" or "meaningless".

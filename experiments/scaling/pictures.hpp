@@ -12,7 +12,7 @@ namespace lancet::experiments::scaling {
 /// - speedup: over the natural order by threads, strong series, with the ideal
 /// - efficiency: of the weak series
 /// - figure-5-8, figure-5-9: the thesis' speed-up curves, and the part of the time in conjugate gradients
-/// Rows without a speed-up are left out. Returns why there are no pictures, or nothing where there are. Throws
+/// Meaningless rows are left out. Returns why there are no pictures, or nothing where there are. Throws
 /// lancet::Error where the folder cannot be made or written to.
 [[nodiscard]] std::string draw(std::span<const Row> rows, const std::filesystem::path& folder);
 

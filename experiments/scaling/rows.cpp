@@ -1,7 +1,6 @@
 #include "lancet/experiments/scaling/rows.hpp"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "lancet/experiments/common/statistics.hpp"
@@ -118,20 +117,20 @@ std::optional<double> over(const Row& row, const Row& base) {
 }
 
 /// What a job's own repetitions say; what is relative to others comes later.
-Row summarise(const Job& job, const std::vector<Report>& reports, double shortest_spin) {
+Row summarise(const Job& job, const std::vector<Report>& reports, double shortest_spin, int enough) {
     if (reports.empty()) throw Error(job.label() + ": no reports found, expected at least one");
     Row row;
     row.job = job;
     row.repetitions = reports.size();
-    row.is_oversubscribed = reports.front().run.threads > reports.front().cores;
-    std::vector<double> lost, others;
+    row.is_oversubscribed = is_oversubscribed(reports.front());
+    const std::vector<double> lost = lost_shares(reports, shortest_spin);
+    std::vector<double> others;
     for (const Report& report : reports) {
-        lost.push_back(lost_share(report.load, shortest_spin, row.is_oversubscribed, report.cores));
         others.push_back(report.load.others);
         row.peak_gflops = std::max(row.peak_gflops, report.peak_gflops);
         row.read_gbytes_per_s = std::max(row.read_gbytes_per_s, report.read_gbytes_per_s);
     }
-    row.mark = judge(lost);
+    row.mark = judge(lost, enough);
     row.lost = median(lost);
     row.others = median(others);
     std::vector<const Report*> counted;
@@ -158,22 +157,17 @@ Row summarise(const Job& job, const std::vector<Report>& reports, double shortes
 std::string Row::note() const {
     std::string text = to_string(mark);
     const auto add = [&text](const std::string& word) { text += (text.empty() ? "" : ", ") + word; };
+    if (is_base_loaded) add("base loaded");
     if (is_oversubscribed) add("oversubscribed");
     if (report.pinned_threads > 0) add("pinned");
     return text;
 }
 
-std::vector<Row> make_rows(const Plan& plan, const Measurement& measurement) {
-    double shortest_spin = 0;
-    for (const auto& reports : measurement) {
-        for (const Report& report : reports) {
-            const double spin = report.load.spin_seconds;
-            if (spin > 0 && (shortest_spin == 0 || spin < shortest_spin)) shortest_spin = spin;
-        }
-    }
+std::vector<Row> make_rows(const Plan& plan, const Measurement& measurement, int repetitions) {
+    const double spin = shortest_spin(measurement);
     std::vector<Row> of_jobs;
     for (std::size_t job = 0; job < plan.jobs.size(); ++job) {
-        of_jobs.push_back(summarise(plan.jobs[job], measurement[job], shortest_spin));
+        of_jobs.push_back(summarise(plan.jobs[job], measurement[job], spin, enough_quiet(repetitions)));
     }
     std::vector<Row> rows;
     for (const Entry& entry : plan.entries) {
@@ -181,6 +175,9 @@ std::vector<Row> make_rows(const Plan& plan, const Measurement& measurement) {
         row.series = entry.series;
         row.speedup = over(row, of_jobs[entry.one_thread]);
         row.speedup_over_serial = over(row, of_jobs[entry.natural_order]);
+        for (const std::size_t base : {entry.one_thread, entry.natural_order}) {
+            row.is_base_loaded = row.is_base_loaded || (base != entry.job && of_jobs[base].mark == LoadMark::loaded);
+        }
         if (!row.job.is_natural_order) {
             const std::string& expected = measurement[entry.same_blocks].front().state;
             row.is_bit_identical = std::ranges::all_of(

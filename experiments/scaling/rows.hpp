@@ -32,13 +32,14 @@ struct Row {
     LoadMark mark = LoadMark::quiet;
     double lost = 0, others = 0;  ///< medians over all repetitions: share of time; cores
     bool is_oversubscribed = false;
+    bool is_base_loaded = false;  ///< a row that a speed-up is formed with is loaded
 
     [[nodiscard]] double seconds() const { return 1e-3 * ms_per_step * job.steps; }
     [[nodiscard]] std::string note() const;
 };
 
-/// The rows of a plan from what was measured.
-[[nodiscard]] std::vector<Row> make_rows(const Plan& plan, const Measurement& measurement);
+/// The rows of a plan from what was measured; `repetitions` were asked for.
+[[nodiscard]] std::vector<Row> make_rows(const Plan& plan, const Measurement& measurement, int repetitions);
 
 /// The rows as a table, with these of its columns, or all.
 [[nodiscard]] Table make_table(std::span<const Row> rows, std::span<const std::string_view> keys = {});

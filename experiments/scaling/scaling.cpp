@@ -108,7 +108,7 @@ ExitCode body(int argc, const char* const* argv) {
     const Plan plan = make_plan(*settings);
     Progress progress;
     const Measurement measurement = measure(plan, *settings, this_program().parent_path(), progress);
-    const std::vector<Row> rows = make_rows(plan, measurement);
+    const std::vector<Row> rows = make_rows(plan, measurement, settings->repetitions);
     std::string complaint;
     if (!settings->plot.empty()) {
         progress.show("pictures");

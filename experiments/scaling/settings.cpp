@@ -91,6 +91,7 @@ void complete(ScalingSettings& settings) {
         kernels::require(kernels::instruction_set_from_string(name));
     }
     if (settings.steps == 0) settings.steps = is_quick ? 25 : 50;
+    if (settings.extra_rounds < 0) settings.extra_rounds = is_quick ? 0 : 5;
     if (settings.repetitions == 0) settings.repetitions = is_quick ? 2 : 5;
 }
 
@@ -131,7 +132,12 @@ std::optional<ScalingSettings> parse_settings(int argc, const char* const* argv)
         ->check(CLI::Range(1, 1'000'000));
     app.add_option("--repetitions", settings.repetitions, "Runs of every row, interleaved; 5, or 2 with --quick")
         ->check(CLI::Range(1, 1000));
-    app.add_flag("--pin", settings.pin, "Hold the threads of all schedulers to cores");
+    app.add_option("--extra-rounds", settings.extra_rounds,
+                   "More rounds, at most, for rows that the machine's load disturbed; 5, or none with --quick")
+        ->check(CLI::Range(0, 1000));
+    app.add_flag("--pin", settings.pin,
+                 "Hold every thread of every scheduler to a core: each asks for it (sched_setaffinity) in a loop that "
+                 "waits for all of them");
     app.add_flag("--no-errors", settings.no_errors, "Measure times only; converged solutions of large meshes are slow");
     app.add_option("--plot", settings.plot, "Draw pictures to FOLDER, as SVG and PNG")->type_name("FOLDER");
     app.add_option("--cache", settings.cache, "Folder where converged solutions are kept")->type_name("FOLDER");

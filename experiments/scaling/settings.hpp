@@ -22,6 +22,7 @@ struct ScalingSettings {
     bool varies_one_by_one = true;  ///< no list of these four was given: the others stand in series "variants" only
     int steps = 0;
     int repetitions = 0;
+    int extra_rounds = -1;  ///< of rows that the machine's load has disturbed; -1: not given
     bool pin = false;
     bool no_errors = false;
     std::filesystem::path plot{};  ///< empty: no pictures

@@ -21,7 +21,7 @@ struct ThesisRun {
 [[nodiscard]] const std::vector<ThesisRun>& thesis_runs();
 
 /// Rows in the form of table 5.1: the whole run of each benchmark in seconds by cores, and the highest speed-up, the
-/// thesis' own line before those of series "thesis". Loaded rows have a star in the note.
+/// thesis' own line before those of series "thesis".
 [[nodiscard]] Table make_table_5_1(std::span<const Row> rows);
 
 /// The numbers of figures 5.8 and 5.9: speed-up over the serial run in natural order, and the part of the time that

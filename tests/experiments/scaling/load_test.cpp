@@ -24,15 +24,19 @@ TEST(LoadRule, ALostShareIsWhatWasWaitedAndStolenOrWhatASpinTookLonger) {
 }
 
 TEST(LoadRule, MarksRows) {
-    const auto mark = [](const std::vector<double>& lost) { return judge(lost); };
-    EXPECT_EQ(mark({0.0}), LoadMark::quiet);
-    EXPECT_EQ(mark({0.049, 0.9, 0.01}), LoadMark::quiet);
-    EXPECT_EQ(mark({0.9, 0.01}), LoadMark::quiet);  // half of them
-    EXPECT_EQ(mark({0.051, 0.9, 0.01}), LoadMark::loaded);
-    EXPECT_EQ(mark({0.06, 0.1, 0.2}), LoadMark::loaded);
-    EXPECT_EQ(mark({0.24, 0.06, 0.9}), LoadMark::loaded);
-    EXPECT_EQ(mark({0.25}), LoadMark::meaningless);
-    EXPECT_EQ(mark({0.3, 0.0, 0.26}), LoadMark::meaningless);
+    const auto mark = [](const std::vector<double>& lost, int repetitions) {
+        return judge(lost, enough_quiet(repetitions));
+    };
+    EXPECT_EQ(mark({0.0}, 1), LoadMark::quiet);
+    EXPECT_EQ(mark({0.049, 0.9, 0.01}, 3), LoadMark::quiet);
+    EXPECT_EQ(mark({0.9, 0.01}, 2), LoadMark::quiet);  // half of them
+    EXPECT_EQ(mark({0.051, 0.9, 0.01}, 3), LoadMark::loaded);
+    EXPECT_EQ(mark({0.06, 0.1, 0.2}, 3), LoadMark::loaded);
+    EXPECT_EQ(mark({0.24, 0.06, 0.9}, 3), LoadMark::loaded);
+    EXPECT_EQ(mark({0.25}, 1), LoadMark::meaningless);
+    EXPECT_EQ(mark({0.3, 0.0, 0.26}, 3), LoadMark::meaningless);
+    // Further rounds count like the first ones, and what is enough stays the same.
+    EXPECT_EQ(mark({0.3, 0.0, 0.26, 0.9, 0.02}, 3), LoadMark::quiet);
 }
 
 TEST(LoadRule, QuietRowsCountTheirQuietRepetitionsAlone) {

@@ -66,7 +66,7 @@ struct Series {
 };
 
 TEST(Rows, SpeedUpsAreAgainstOneThreadAndAgainstTheNaturalOrder) {
-    const std::vector<Row> rows = make_rows(Series().plan, Series().measurement);
+    const std::vector<Row> rows = make_rows(Series().plan, Series().measurement, 1);
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_DOUBLE_EQ(rows[3].ms_per_step, 60);
     EXPECT_DOUBLE_EQ(rows[3].speedup.value(), 1 / 0.6);
@@ -87,7 +87,7 @@ TEST(Rows, SpeedUpsAreAgainstOneThreadAndAgainstTheNaturalOrder) {
 TEST(Rows, OneOtherBitInOneRepetitionShows) {
     Series series;
     series.measurement[4].push_back(some_report(series.plan.jobs[4], 0.5, 0, "other"));
-    EXPECT_FALSE(make_rows(series.plan, series.measurement)[4].is_bit_identical.value());
+    EXPECT_FALSE(make_rows(series.plan, series.measurement, 1)[4].is_bit_identical.value());
 }
 
 TEST(Rows, TheMedianIsThatOfQuietRepetitions) {
@@ -95,7 +95,7 @@ TEST(Rows, TheMedianIsThatOfQuietRepetitions) {
     const Job& job = series.plan.jobs[3];
     series.measurement[3] = {some_report(job, 0.60), some_report(job, 9.0, 0.4), some_report(job, 0.62),
                              some_report(job, 0.64)};
-    const Row row = make_rows(series.plan, series.measurement)[3];
+    const Row row = make_rows(series.plan, series.measurement, 4)[3];
     EXPECT_EQ(row.mark, LoadMark::quiet);
     EXPECT_EQ(row.repetitions, 4U);
     EXPECT_EQ(row.counted, 3U);
@@ -106,22 +106,32 @@ TEST(Rows, TheMedianIsThatOfQuietRepetitions) {
 TEST(Rows, WithMeaninglessOnesNoSpeedUpIsFormed) {
     Series series;
     series.measurement[3] = {some_report(series.plan.jobs[3], 0.6, 0.3)};
-    std::vector<Row> rows = make_rows(series.plan, series.measurement);
+    std::vector<Row> rows = make_rows(series.plan, series.measurement, 1);
     EXPECT_EQ(rows[3].note(), "meaningless");
     EXPECT_FALSE(rows[3].speedup);
     EXPECT_FALSE(rows[3].speedup_over_serial);
     EXPECT_TRUE(rows[4].speedup);
 
     series.measurement[0] = {some_report(series.plan.jobs[0], 0.9, 0.3)};
-    rows = make_rows(series.plan, series.measurement);
+    rows = make_rows(series.plan, series.measurement, 1);
     EXPECT_TRUE(rows[4].speedup);
     EXPECT_FALSE(rows[4].speedup_over_serial) << "the base is meaningless";
+}
+
+TEST(Rows, SayThatTheirBaseIsLoaded) {
+    Series series;
+    series.measurement[0] = {some_report(series.plan.jobs[0], 0.9, 0.1)};
+    const std::vector<Row> rows = make_rows(series.plan, series.measurement, 1);
+    EXPECT_EQ(rows[0].note(), "loaded");
+    EXPECT_EQ(rows[1].note(), "base loaded");
+    EXPECT_EQ(rows[5].note(), "base loaded, oversubscribed");
+    EXPECT_TRUE(rows[5].speedup_over_serial);
 }
 
 // 1, 2 and 4 threads of a law of 20 %; eight are more than there are cores.
 TEST(Rows, TheSerialFractionIsFittedToWhatMeansSomething) {
     Series series;
-    auto fractions = fit_serial_fractions(make_rows(series.plan, series.measurement));
+    auto fractions = fit_serial_fractions(make_rows(series.plan, series.measurement, 1));
     ASSERT_EQ(fractions.size(), 1U);
     EXPECT_EQ(fractions[0].counts, 3);
     ASSERT_TRUE(fractions[0].fit);
@@ -129,7 +139,7 @@ TEST(Rows, TheSerialFractionIsFittedToWhatMeansSomething) {
     EXPECT_EQ(make_table(fractions).rows().size(), 1U);
 
     series.measurement[3] = {some_report(series.plan.jobs[3], 0.6, 0.3)};
-    fractions = fit_serial_fractions(make_rows(series.plan, series.measurement));
+    fractions = fit_serial_fractions(make_rows(series.plan, series.measurement, 1));
     EXPECT_EQ(fractions[0].counts, 2);
     EXPECT_FALSE(fractions[0].fit);
     EXPECT_TRUE(make_table(fractions).to_json()[0].at("serial_fraction_percent").is_null());
@@ -138,7 +148,7 @@ TEST(Rows, TheSerialFractionIsFittedToWhatMeansSomething) {
 TEST(Rows, TableFiveOneHasTheThesisFirst) {
     Series series;
     for (Entry& entry : series.plan.entries) entry.series = "thesis";
-    const auto rows = make_rows(series.plan, series.measurement);
+    const auto rows = make_rows(series.plan, series.measurement, 1);
     const auto table = make_table_5_1(rows).to_json();
     ASSERT_EQ(table.size(), 4U);
     EXPECT_EQ(table[0].at("program"), "thesis");
@@ -156,7 +166,7 @@ TEST(Rows, TableFiveOneHasTheThesisFirst) {
 TEST(Rows, RefuseJobsWithoutReports) {
     Series series;
     series.measurement[2].clear();
-    EXPECT_THROW((void)make_rows(series.plan, series.measurement), Error);
+    EXPECT_THROW((void)make_rows(series.plan, series.measurement, 1), Error);
     const std::vector<std::string_view> unknown{"speed"};
     EXPECT_THROW((void)make_table(std::span<const Row>(), unknown), Error);
 }

@@ -30,6 +30,9 @@ TEST(ScalingSettings, HaveDefaults) {
     EXPECT_GE(settings.steps, 25) << "errors are measured after 25 steps";
     EXPECT_GE(parse({"--quick"}).steps, 25);
     EXPECT_LT(parse({"--quick"}).repetitions, settings.repetitions);
+    EXPECT_GT(settings.extra_rounds, 0);
+    EXPECT_EQ(parse({"--quick"}).extra_rounds, 0);
+    EXPECT_EQ(parse({"--extra-rounds=0"}).extra_rounds, 0);
 }
 
 TEST(ScalingSettings, ListsFixTheOthers) {
@@ -51,9 +54,10 @@ TEST(ScalingSettings, TheSerialSchedulerIsNoChoice) {
 }
 
 TEST(ScalingSettings, RefuseNonsense) {
-    for (const std::string bad : {"--series=fast", "--problem=liver", "--operator=dense", "--scatter=luck",
-                                  "--elements=99", "--elements=x", "--setting=best", "--steps=0", "--repetitions=0",
-                                  "--threads=0", "--threads=2,2", "--scalar=half", "--isa=mmx", "--json=/nowhere/x"}) {
+    for (const std::string bad :
+         {"--series=fast", "--problem=liver", "--operator=dense", "--scatter=luck", "--elements=99", "--elements=x",
+          "--setting=best", "--steps=0", "--repetitions=0", "--extra-rounds=-1", "--threads=0", "--threads=2,2",
+          "--scalar=half", "--isa=mmx", "--json=/nowhere/x"}) {
         EXPECT_THROW((void)parse({bad}), Error) << bad;
     }
 }
