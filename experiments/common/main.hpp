@@ -11,7 +11,8 @@ namespace lancet::experiments {
 enum class ExitCode : int {
     success = 0,
     check_failed = 1,  ///< the program ran, but a check of its own on the results failed
-    bad_input = 2      ///< wrong options, a broken file, or something that this machine cannot do
+    bad_input = 2,     ///< wrong options, a broken file, or something that this machine cannot do
+    stopped = 3        ///< a signal ended the run; what it had found by then has been written
 };
 
 /// Thrown when a check of the experiment on its own results fails. The message says which, and what was found.

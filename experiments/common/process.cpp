@@ -188,14 +188,22 @@ ProcessResult run_process(const Command& command) {
     writing.close();
 
     ProcessResult result;
-    if (!read_until(reading.number(), deadline, result.output) || !child.wait_until(deadline)) {
+    // The end of a killed program is the end of its output. Behind this block it may have been waited for, and its
+    // number be another's.
+    const bool is_read = [&] {
+        const std::stop_callback kill_it(command.stop, [&child] { child.kill(); });
+        return read_until(reading.number(), deadline, result.output);
+    }();
+    if (!is_read || !child.wait_until(deadline)) {
         child.kill();
         child.wait();
         result.end = TimedOut{};
         return result;
     }
     const int status = child.wait();
-    if (WIFSIGNALED(status)) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL && command.stop.stop_requested()) {
+        result.end = Stopped{};
+    } else if (WIFSIGNALED(status)) {
         result.end = Signalled{WTERMSIG(status)};
     } else {
         result.end = Exited{WEXITSTATUS(status)};
@@ -208,7 +216,7 @@ std::string describe(const ProcessEnd& end) {
     if (const auto* signalled = std::get_if<Signalled>(&end)) {
         return "signal " + std::to_string(signalled->number) + " (" + ::strsignal(signalled->number) + ")";
     }
-    return "killed after its time limit";
+    return std::holds_alternative<Stopped>(end) ? "stopped" : "killed after its time limit";
 }
 
 std::filesystem::path this_program() {

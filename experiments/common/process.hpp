@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +17,7 @@ struct Command {
     std::vector<std::string> arguments{};                            ///< without the program's own name
     std::vector<std::pair<std::string, std::string>> environment{};  ///< set on top of the caller's own environment
     std::optional<std::chrono::milliseconds> timeout{};              ///< after this time the program is killed
+    std::stop_token stop{};                                          ///< when it asks, the program is killed
 };
 
 /// It ended by itself, with this exit code.
@@ -28,9 +30,11 @@ struct Signalled {
 };
 /// It ran longer than Command::timeout and was killed.
 struct TimedOut {};
+/// Command::stop asked, and it was killed.
+struct Stopped {};
 
 /// How a program ended.
-using ProcessEnd = std::variant<Exited, Signalled, TimedOut>;
+using ProcessEnd = std::variant<Exited, Signalled, TimedOut, Stopped>;
 
 /// What is left of a program that was run.
 struct ProcessResult {
@@ -46,7 +50,7 @@ struct ProcessResult {
 /// started; however it ends, once started, is a result.
 [[nodiscard]] ProcessResult run_process(const Command& command);
 
-/// "exit code 3", "signal 11 (Segmentation fault)" or "killed after its time limit".
+/// "exit code 3", "signal 11 (Segmentation fault)", "killed after its time limit" or "stopped".
 [[nodiscard]] std::string describe(const ProcessEnd& end);
 
 /// The file of the running program, for programs that start copies of themselves as workers. Throws lancet::Error where

@@ -12,6 +12,7 @@
 #include "lancet/experiments/common/options.hpp"
 #include "lancet/experiments/common/process.hpp"
 #include "lancet/experiments/common/progress.hpp"
+#include "lancet/experiments/common/stop_signal.hpp"
 #include "lancet/experiments/stability/case.hpp"
 #include "lancet/experiments/stability/report.hpp"
 #include "lancet/experiments/stability/workers.hpp"
@@ -88,7 +89,7 @@ int processes_of(const SharedOptions& shared) {
 ExitCode body(int argc, const char* const* argv) {
     CLI::App app(
         "Stress tests: slivers, random cut sequences, lost shapes, extreme materials and bad input. Exit code 1 where "
-        "something fails that the method is made for");
+        "something fails that the method is made for, 3 when SIGINT or SIGTERM ends it: with what there is by then");
     Options options;
     add_options(app, options);
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
@@ -112,25 +113,38 @@ ExitCode body(int argc, const char* const* argv) {
     }
     scheduler_of(options.shared);  // refused here if it is not compiled in
 
-    WorkerSettings settings{.program = this_program(),
-                            .arguments = {argv + 1, argv + argc},
-                            .instruction_set = instruction_set,
-                            .processes = processes_of(options.shared),
-                            .seconds = options.limit};
+    const int processes = processes_of(options.shared);
+    const std::string_view set =
+        instruction_set.empty() ? kernels::to_string(kernels::active_instruction_set()) : instruction_set;
+    const auto write_json = [&](const std::vector<Outcome>& outcomes, bool is_complete) {
+        if (!options.shared.json) return;
+        nlohmann::ordered_json document;
+        document["machine"] = runtime::machine_stamp(set, runtime::SchedulerKind::serial, processes);
+        document["seed"] = options.selection.seed;
+        document["complete"] = is_complete;
+        document["cases"] = cases.size();
+        document["run"] = outcomes.size();
+        document.update(report_json(outcomes));
+        write_json_file(*options.shared.json, document);
+    };
+    const StopOnSignal signals;
+    const WorkerSettings settings{
+        .program = this_program(),
+        .arguments = {argv + 1, argv + argc},
+        .instruction_set = instruction_set,
+        .processes = processes,
+        .seconds = options.limit,
+        .stop = signals.token(),
+        .interim = [&](const std::vector<Outcome>& outcomes) { write_json(outcomes, false); }};
     Progress progress;
     const std::vector<Outcome> outcomes = run_cases(cases, settings, progress);
     progress.clear();
     print_report(std::cout, outcomes);
     if (options.shared.csv) survival_table(outcomes).write_csv(*options.shared.csv);
-    if (options.shared.json) {
-        nlohmann::ordered_json document;
-        document["machine"] =
-            runtime::machine_stamp(instruction_set.empty() ? kernels::to_string(kernels::active_instruction_set())
-                                                           : std::string_view(instruction_set),
-                                   runtime::SchedulerKind::serial, settings.processes);
-        document["seed"] = options.selection.seed;
-        document.update(report_json(outcomes));
-        write_json_file(*options.shared.json, document);
+    write_json(outcomes, outcomes.size() == cases.size());
+    if (outcomes.size() < cases.size()) {
+        std::cerr << "stability: stopped after " << outcomes.size() << " of " << cases.size() << " cases\n";
+        return ExitCode::stopped;
     }
     const std::size_t failures = promised_failures(outcomes);
     if (failures > 0) throw CheckFailed(std::to_string(failures) + " cases failed that should survive");

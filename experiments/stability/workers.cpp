@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <thread>
@@ -27,12 +28,13 @@ class Queue {
             std::size_t begin = 0, end = 0;
             {
                 const std::lock_guard lock(mutex_);
-                if (next_ == cases_->size() || error_) return;
+                if (next_ == cases_->size() || error_ || settings_->stop.stop_requested()) return;
                 begin = next_;
                 end = next_ = std::min(begin + static_cast<std::size_t>(settings_->cases), cases_->size());
             }
             try {
-                while (begin < end) begin = run_some(begin, end);
+                while (begin < end && !settings_->stop.stop_requested()) begin = run_some(begin, end);
+                tell();
             } catch (...) {
                 const std::lock_guard lock(mutex_);
                 if (!error_) error_ = std::current_exception();
@@ -42,7 +44,7 @@ class Queue {
 
     std::vector<Outcome> take() {
         if (error_) std::rethrow_exception(error_);
-        return std::move(outcomes_);
+        return finished();
     }
 
   private:
@@ -52,6 +54,7 @@ class Queue {
         command.arguments.push_back("--worker=" + std::to_string(begin) + "," + std::to_string(end));
         if (!settings_->instruction_set.empty()) command.environment = {{"LANCET_ISA", settings_->instruction_set}};
         command.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * settings_->seconds));
+        command.stop = settings_->stop;
         const ProcessResult result = run_process(command);
         if (const auto* exited = std::get_if<Exited>(&result.end); exited != nullptr && exited->code == 2) {
             throw Error("stability: a worker refused its input");
@@ -62,7 +65,7 @@ class Queue {
             put(begin, verdict_of(nlohmann::ordered_json::parse(line)));
             ++begin;
         }
-        if (begin < end) {
+        if (begin < end && !std::holds_alternative<Stopped>(result.end)) {
             Verdict verdict;
             verdict.fail("the program ended here: " + describe(result.end));
             put(begin, verdict);
@@ -71,9 +74,26 @@ class Queue {
         return begin;
     }
 
+    std::vector<Outcome> finished() const {
+        std::vector<Outcome> finished;
+        for (const std::optional<Outcome>& outcome : outcomes_) {
+            if (outcome) finished.push_back(*outcome);
+        }
+        return finished;
+    }
+
+    /// Hands over what there is, if it is time.
+    void tell() {
+        const std::lock_guard lock(mutex_);
+        const auto now = std::chrono::steady_clock::now();
+        if (!settings_->interim || now - told_ < settings_->between_interims) return;
+        settings_->interim(finished());
+        told_ = std::chrono::steady_clock::now();
+    }
+
     void put(std::size_t index, const Verdict& verdict) {
         const std::lock_guard lock(mutex_);
-        outcomes_[index] = {(*cases_)[index], verdict};
+        outcomes_[index] = Outcome{(*cases_)[index], verdict};
         failed_ += verdict.survived ? 0 : 1;
         ++done_;
         if (done_ % 20 == 0 || done_ == cases_->size()) {
@@ -86,7 +106,8 @@ class Queue {
     const WorkerSettings* settings_;
     Progress* progress_;
     std::mutex mutex_;
-    std::vector<Outcome> outcomes_;
+    std::vector<std::optional<Outcome>> outcomes_;
+    std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();
     std::size_t next_ = 0, done_ = 0, failed_ = 0;
     std::exception_ptr error_;
 };

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,9 +21,13 @@ struct WorkerSettings {
     int processes = 1;                     ///< at the same time
     int cases = 20;                        ///< of each process, at most
     double seconds = 1200;                 ///< that one may take
+    std::stop_token stop{};                ///< when it asks, what runs is given up, and nothing more is begun
+    /// Takes what there is, in the order of the cases, whenever so much time has passed. May be empty.
+    std::function<void(const std::vector<Outcome>&)> interim{};
+    std::chrono::seconds between_interims{10};
 };
 
-/// Runs all cases; the outcomes are in their order.
+/// Runs all cases; the outcomes are in their order. When it is stopped: of those that came to an end.
 std::vector<Outcome> run_cases(const std::vector<Case>& cases, const WorkerSettings& settings, Progress& progress);
 
 /// What a worker does: runs cases begin to end, and prints a line for each.

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <stop_token>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,6 +84,21 @@ TEST(RunProcess, KillsAtItsTimeLimitAndKeepsTheOutput) {
     EXPECT_TRUE(std::holds_alternative<TimedOut>(result.end));
     EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(300));
     EXPECT_FALSE(result.succeeded());
+}
+
+TEST(RunProcess, StopsWhenItIsAsked) {
+    std::stop_source stop;
+    const std::jthread asks([&stop] { stop.request_stop(); });
+    const ProcessResult result =
+        run_process({.program = "sh", .arguments = {"-c", "exec sleep 3600"}, .stop = stop.get_token()});
+    EXPECT_TRUE(std::holds_alternative<Stopped>(result.end));
+    EXPECT_EQ(describe(result.end), "stopped");
+    EXPECT_FALSE(result.succeeded());
+}
+
+TEST(RunProcess, AStopThatNobodyAsksForChangesNothing) {
+    const std::stop_source stop;
+    EXPECT_EQ(run_process({.program = "echo", .arguments = {"done"}, .stop = stop.get_token()}).output, "done\n");
 }
 
 TEST(RunProcess, KillsAProgramThatClosedItsOutput) {

@@ -1,9 +1,12 @@
 // The program `stability` from its command line to its files.
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -11,6 +14,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "lancet/experiments/common/process.hpp"
 
@@ -41,6 +47,8 @@ TEST(StabilityProgram, CountsEveryCategoryAndNamesEveryFailure) {
     const auto json = read_json(json_file);
     EXPECT_TRUE(json.at("machine").contains("cpu_model"));
     EXPECT_EQ(json.at("seed"), 1);
+    EXPECT_EQ(json.at("complete"), true);
+    EXPECT_EQ(json.at("run"), json.at("cases"));
     std::set<std::string> categories;
     int failed = 0, promised_failed = 0;
     for (const auto& row : json.at("categories")) {
@@ -80,6 +88,37 @@ TEST(StabilityProgram, GivesTheSameOutcomesHoweverManyProcesses) {
     }
     EXPECT_EQ(rows[0].at("rows"), rows[1].at("rows"));
     EXPECT_EQ(rows[0].at("failures"), rows[1].at("failures"));
+}
+
+TEST(StabilityProgram, ASignalEndsItWithWhatThereIs) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.path() / "out.json";
+    // More cases than could come to an end before the signal.
+    std::vector<std::string> arguments{LANCET_STABILITY_PROGRAM, "--category=not-finite", "--cases=10000000",
+                                       "--threads=1", "--json=" + file.string()};
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    pid_t program = 0;
+    ASSERT_EQ(::posix_spawn(&program, LANCET_STABILITY_PROGRAM, nullptr, nullptr, pointers.data(), environ), 0);
+    while (!std::filesystem::exists(file)) {
+        ASSERT_EQ(::waitpid(program, nullptr, WNOHANG), 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    const auto interim = read_json(file);
+    ::kill(program, SIGTERM);
+    int status = 0;
+    ASSERT_EQ(::waitpid(program, &status, 0), program);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 3);
+    const auto last = read_json(file);
+    for (const auto& json : {interim, last}) {
+        EXPECT_EQ(json.at("complete"), false);
+        EXPECT_EQ(json.at("cases"), 10000000);
+        EXPECT_GT(json.at("run"), 0);
+        EXPECT_EQ(json.at("categories").at(0).at("run"), json.at("run"));
+    }
+    EXPECT_GE(last.at("run"), interim.at("run"));
 }
 
 TEST(StabilityProgram, RefusesBadInputWithExitCode2) {
