@@ -56,16 +56,29 @@ class Exact {
     }
 
     int sign() const { return mantissa_.sign(); }
-    /// The value as a double with its bound: half a unit in the last place.
+    /// The value as a double with its bound: half a unit in the last place, or, below the normal numbers, the smallest
+    /// of these. What is not zero keeps its sign however small it is.
     Bounded bounded() const {
         if (sign() == 0) return {};
+        using Limits = std::numeric_limits<double>;
         const auto magnitude = static_cast<Integer>(abs(mantissa_));
         const auto bits = static_cast<int>(msb(magnitude)) + 1;
         const int drop = bits > 64 ? bits - 64 : 0;
         const auto leading = static_cast<std::uint64_t>(magnitude >> drop);
         const double value = std::ldexp(static_cast<double>(leading), exponent_ + drop);
+        if (value < Limits::min()) return {sign() * std::max(value, Limits::denorm_min()), Limits::min()};
         const bool is_exact = drop == 0 && bits <= 53;
-        return {sign() * value, is_exact ? 0.0 : value * std::numeric_limits<double>::epsilon()};
+        return {sign() * value, is_exact ? 0.0 : value * Limits::epsilon()};
+    }
+    /// The e with 2^e <= |value| < 2^(e + 1); 0 for zero.
+    int exponent() const {
+        return sign() == 0 ? 0 : static_cast<int>(msb(static_cast<Integer>(abs(mantissa_)))) + exponent_;
+    }
+    /// The value times 2^exponent.
+    Exact scaled(int exponent) const {
+        Exact result = *this;
+        if (sign() != 0) result.exponent_ += exponent;
+        return result;
     }
     double value() const { return bounded().value; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lancet::mesh {
 
@@ -98,7 +99,12 @@ int PlanePool::add_point(const std::array<int, 3>& planes) {
         for (Bounded& weight : point.weights) weight = sign < 0 ? -weight : weight;
     } else {
         const std::array<Exact, 4>& exact = exact_weights(point);
-        for (std::size_t k = 0; k < 4; ++k) point.weights[k] = exact[k].bounded();
+        // Products of tiny values may all lie below the range of double; only their ratios matter.
+        int largest = std::numeric_limits<int>::min();
+        for (const Exact& weight : exact) {
+            if (weight.sign() != 0) largest = std::max(largest, weight.exponent());
+        }
+        for (std::size_t k = 0; k < 4; ++k) point.weights[k] = exact[k].scaled(-largest).bounded();
     }
     double sum = 0;
     for (const Bounded& weight : point.weights) sum += weight.value;
@@ -122,7 +128,9 @@ double PlanePool::volume_fraction(const std::array<int, 4>& points) const {
     }
     const auto coordinate = [&](std::size_t k, std::size_t i) {
         const double value = (*c[k % 4])[i];
-        return Bounded{value, 4 * precise * std::abs(value)};  // a quotient of two such numbers
+        // A quotient of two such numbers; below the normal ones it has lost its digits.
+        const bool is_normal = value == 0 || std::abs(value) >= std::numeric_limits<double>::min();
+        return Bounded{value, 4 * precise * std::abs(value) + (is_normal ? 0 : std::numeric_limits<double>::min())};
     };
     std::array<std::array<Bounded, 3>, 3> d{};
     for (std::size_t row = 0; row < 3; ++row) {
@@ -146,10 +154,9 @@ double PlanePool::exact_volume_fraction(const std::array<int, 4>& points) const 
     double divisor = 1;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::array<Exact, 4>& w = weights(k);
-        const double sum = std::abs(((w[0] + w[1]) + (w[2] + w[3])).value());
-        const int exponent = std::ilogb(sum);
-        determinant = determinant * Exact(std::ldexp(1.0, -exponent));
-        divisor *= std::ldexp(sum, -exponent);
+        const Exact sum = (w[0] + w[1]) + (w[2] + w[3]);
+        determinant = determinant.scaled(-sum.exponent());
+        divisor *= std::abs(sum.scaled(-sum.exponent()).value());
     }
     return std::abs(determinant.value()) / divisor;
 }

@@ -377,6 +377,26 @@ TEST(CutMesh, ACutRepeatedChangesNothing) {
     expect_consistent(cut);
 }
 
+// A node at the origin, moved by one unit in the last place, is 4.9e-324 away: products of such values are below every
+// double, and yet have a sign.
+TEST(CutMesh, PlanesASubnormalNumberBesideANodeAreOnTheirSideOfIt) {
+    for (const double beside : {0x1p-1074, -0x1p-1074, 0x1p-1040, 0x1p-1022, 0x1p-400}) {
+        CutMesh cut(mesh::box({.cells = {2, 2, 2}, .split = mesh::Split::six, .origin = {-0.5, -0.5, -0.5}}));
+        cut.cut(CutSurface::plane({beside, 0, 0}, {1, 0, 0}));
+        cut.cut(CutSurface::plane({0, beside, 0}, {0.5, 1, 0}));
+        cut.cut(CutSurface::plane({0, 0, beside}, {0.25, 0.5, 1}));
+        cut.cut(CutSurface::plane({0, 0, -beside}, {1, 1, 1}));
+        cut.cut(CutSurface::plane({beside, beside, beside}, {-1, 0.5, 0.25}));
+        std::vector<double> fractions(cut.mesh().tetrahedra().size(), 0.0);
+        for (std::size_t part = 0; part < cut.parts().size(); ++part) {
+            const double fraction = cut.moments(static_cast<std::int32_t>(part)).fraction;
+            EXPECT_GE(fraction, 0) << beside;  // zero where the volume is below every double
+            fractions[static_cast<std::size_t>(cut.element_of_part()[part])] += fraction;
+        }
+        for (const double sum : fractions) EXPECT_NEAR(sum, 1, 0x1p-45) << beside;
+    }
+}
+
 TEST(CutMesh, ALevelSetIsTakenAsLinearBetweenNodes) {
     CutMesh cut = cube(12);
     cut.cut(CutSurface::level_set([](const Point& x) { return std::hypot(x[0] - 0.5, x[1] - 0.5, x[2] - 0.5) - 0.3; }));
