@@ -22,6 +22,7 @@ FrontOpening::FrontOpening(const CutMesh& cut) : cut_(cut) {
         }
     }
     for (const std::int32_t element : around) divide_region(element);
+    close_undivided();
     for (auto& [copy, front] : fronts_) {
         if (front.openness() == 0) continue;
         front.far = static_cast<std::int32_t>(cut_.node_of_copy().size() + opened_from_.size());
@@ -133,6 +134,10 @@ void FrontOpening::divide_region(std::int32_t element) {
         const ElementCells::Halves halves = cells.halves(static_cast<int>(p), plane);
         if (halves.below.fraction > 0) region.sides.push_back({parts[p], halves.below, -1});
         if (halves.above.fraction > 0) region.sides.push_back({parts[p], halves.above, 1});
+        if (!(halves.below.fraction + halves.above.fraction >
+              0)) {  // too thin for a number, and yet all of some copies
+            region.sides.push_back({parts[p], cut_.moments(parts[p]), 0});
+        }
         for (const std::vector<Barycentric>& polygon : halves.section) {
             const std::array<double, 4> moments = section_moments(element, polygon);
             for (std::size_t k = 0; k < 4; ++k) {
@@ -144,28 +149,61 @@ void FrontOpening::divide_region(std::int32_t element) {
     regions_[element] = std::move(region);
 }
 
+PartOpening FrontOpening::opening_of(std::int32_t part, const Region& region) const {
+    PartOpening opening{.guide = region.guide.values, .corners = {}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::int32_t copy = cut_.parts()[static_cast<std::size_t>(part)][k];
+        const auto found = fronts_.find(copy);
+        if (found == fronts_.end() || found->second.openness() == 0) continue;
+        const Front& front = found->second;
+        const Guide here = carried(front.guide, region.guide.element);
+        // Facets may be turned either way: sides are told as the front's guide has them.
+        double agreement = 0;
+        for (std::size_t i = 0; i < 4; ++i) agreement += here.values[i] * region.guide.values[i];
+        opening.corners[k] = {front.openness(), sign_of(here.values[k]) * sign_of(agreement), front.far};
+    }
+    return opening;
+}
+
+std::map<std::int32_t, PartOpening> FrontOpening::openings() const {
+    std::map<std::int32_t, PartOpening> openings;
+    for (const auto& [element, region] : regions_) {
+        for (const std::int32_t part : cut_.parts_of_element(element)) {
+            const PartOpening opening = opening_of(part, region);
+            if (opening.is_open()) openings[part] = opening;
+        }
+    }
+    return openings;
+}
+
+/// A copy that has parts on one side of its cut alone, where other cuts have taken those of the other, stays closed:
+/// its two sides would be one of them and nothing.
+void FrontOpening::close_undivided() {
+    std::map<std::int32_t, std::array<bool, 2>> has;  // by copy: parts on its own side, and on the far one
+    for (const auto& [element, region] : regions_) {
+        std::map<std::int32_t, PartOpening> openings;
+        for (const Side& side : region.sides) {
+            const auto [opening, is_new] = openings.try_emplace(side.part);
+            if (is_new) opening->second = opening_of(side.part, region);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const PartOpening::Corner& corner = opening->second.corners[k];
+                if (corner.openness == 0 || side.side == 0) continue;
+                has[cut_.parts()[static_cast<std::size_t>(side.part)][k]][side.side == corner.near_side ? 0 : 1] = true;
+            }
+        }
+    }
+    for (auto& [copy, front] : fronts_) {
+        if (!has[copy][0] || !has[copy][1]) front.cut = 0;
+    }
+}
+
 std::vector<FrontOpening::Piece> FrontOpening::pieces_of(std::int32_t element, const Region& region) const {
-    // For each part and corner: how far its copy is open, on which side of the guide the node is, and the far copy.
-    struct Corner {
-        double openness = 0;
-        int near_side = 1;
-        std::int32_t far = -1;
-    };
-    std::map<std::int32_t, std::array<Corner, 4>> corners_of;
+    std::map<std::int32_t, PartOpening> openings;
     std::set<double> levels{1.0};
     for (const std::int32_t part : cut_.parts_of_element(element)) {
-        std::array<Corner, 4>& corners = corners_of[part];
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::int32_t copy = cut_.parts()[static_cast<std::size_t>(part)][k];
-            const auto found = fronts_.find(copy);
-            if (found == fronts_.end() || found->second.openness() == 0) continue;
-            const Front& front = found->second;
-            const Guide here = carried(front.guide, element);
-            // Facets may be turned either way: sides are told as the front's guide has them.
-            double agreement = 0;
-            for (std::size_t i = 0; i < 4; ++i) agreement += here.values[i] * region.guide.values[i];
-            corners[k] = {front.openness(), sign_of(here.values[k]) * sign_of(agreement), front.far};
-            levels.insert(front.openness());
+        openings[part] = opening_of(part, region);
+        for (const PartOpening::Corner& corner : openings[part].corners) {
+            if (corner.openness > 0) levels.insert(corner.openness);
         }
     }
     std::vector<Piece> pieces;
@@ -174,9 +212,10 @@ std::vector<FrontOpening::Piece> FrontOpening::pieces_of(std::int32_t element, c
         // Thresholds in (lower, level): open is what is at least this far open.
         for (const Side& side : region.sides) {
             Tetrahedron copies = cut_.parts()[static_cast<std::size_t>(side.part)];
-            const std::array<Corner, 4>& corners = corners_of.at(side.part);
+            const auto& corners = openings.at(side.part).corners;
             for (std::size_t k = 0; k < 4; ++k) {
-                if (corners[k].openness >= level && side.side != corners[k].near_side) copies[k] = corners[k].far;
+                const bool is_far = side.side != 0 && side.side != corners[k].near_side;
+                if (is_far && corners[k].openness >= level) copies[k] = corners[k].far;
             }
             pieces.push_back({copies, side.moments, level - lower});
         }

@@ -8,6 +8,7 @@
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
 #include "lancet/mesh/cut/element_cells.hpp"
+#include "lancet/mesh/cut/front_blend.hpp"
 
 namespace lancet::mesh {
 
@@ -27,6 +28,8 @@ class FrontOpening {
     const std::vector<std::int32_t>& opened_from() const noexcept { return opened_from_; }
     /// The pieces of all elements around opening copies.
     std::map<std::int32_t, std::vector<Piece>> pieces() const;
+    /// What of each part around opening copies is open, in the order of the parts.
+    std::map<std::int32_t, PartOpening> openings() const;
 
   private:
     /// A plane of a cut by the values of its function at the corners of an element.
@@ -37,7 +40,7 @@ class FrontOpening {
     /// A copy in which two sides of a cut meet.
     struct Front {
         Guide guide{};         ///< the cut that comes nearest
-        double cut = 0;        ///< int phi over what is cut of the sections around it, square metres
+        double cut = 0;        ///< int phi over what is cut of the sections around it, square metres; 0: stays closed
         double left = 0;       ///< over what is not
         std::int32_t far = 0;  ///< the copy of the far side
         double openness() const { return cut > 0 ? cut / (cut + left) : 0; }
@@ -46,7 +49,7 @@ class FrontOpening {
     struct Side {
         std::int32_t part;
         PartMoments moments;
-        int side;  ///< of the element's guide
+        int side;  ///< of the element's guide; 0 where there is no volume to tell
     };
     struct Region {
         Guide guide{};
@@ -55,9 +58,11 @@ class FrontOpening {
 
     void find_fronts();
     void divide_region(std::int32_t element);
+    void close_undivided();
     Guide guide_of(std::int32_t element) const;
     Guide carried(const Guide& guide, std::int32_t element) const;
     std::array<double, 4> section_moments(std::int32_t element, std::span<const Barycentric> polygon) const;
+    PartOpening opening_of(std::int32_t part, const Region& region) const;
     std::vector<Piece> pieces_of(std::int32_t element, const Region& region) const;
 
     const CutMesh& cut_;

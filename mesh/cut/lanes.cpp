@@ -1,8 +1,10 @@
 #include "lancet/mesh/cut/lanes.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
+#include "lancet/kernels/error.hpp"
 #include "lancet/mesh/cut/front_opening.hpp"
 
 namespace lancet::mesh {
@@ -32,6 +34,10 @@ class ElementLanes {
 };
 
 }  // namespace
+
+std::string_view to_string(Fronts fronts) noexcept {
+    return fronts == Fronts::blended ? "blended" : "sharp";
+}
 
 Lanes lanes(const CutMesh& cut, Fronts fronts) {
     Lanes result;
@@ -69,6 +75,20 @@ Lanes lanes(const CutMesh& cut, Fronts fronts) {
     }
     result.lanes.insert(result.lanes.end(), further.begin(), further.end());
     return result;
+}
+
+void raise_fractions(Lanes& lanes, double floor) {
+    if (!(floor >= 0 && floor < 1)) throw Error("cuts: the smallest fraction of an element must be in [0, 1)");
+    for (Lanes::Lane& lane : lanes.lanes) {
+        const double fraction = lane.moments.fraction;
+        if (fraction >= floor) continue;
+        // What is too thin to have a centre gets that of the whole element.
+        const bool has_centre = fraction >= std::numeric_limits<double>::min();
+        const PartMoments own = has_centre ? lane.moments : PartMoments{};
+        lane.moments = empty_moments();
+        add_weighted(lane.moments, own, floor / own.fraction);
+        lane.moments.fraction = floor;
+    }
 }
 
 }  // namespace lancet::mesh

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
@@ -12,6 +13,7 @@ enum class Fronts {
     sharp,   ///< parts as they are: a node has copies only where everything around it is separated
     blended  ///< copies fade in while the front passes by (see below)
 };
+std::string_view to_string(Fronts fronts) noexcept;
 
 /// The elements with which a cut mesh is computed: tetrahedra on copies of nodes, of which only a part is there.
 ///
@@ -41,5 +43,11 @@ struct Lanes {
 };
 
 Lanes lanes(const CutMesh& cut, Fronts fronts = Fronts::sharp);
+
+/// Takes lanes that have less than `floor` of their element as if they had so much of it: all their moments grow in
+/// proportion, so that centres stay. Stiffness and mass are then no smaller than `floor` of an element's, which methods
+/// without a preconditioner for thin parts need; it is an error, for up to `floor` of an element is there twice. Here
+/// nothing needs it: thin parts are solved as well as others. Throws lancet::Error for a floor outside of [0, 1).
+void raise_fractions(Lanes& lanes, double floor);
 
 }  // namespace lancet::mesh

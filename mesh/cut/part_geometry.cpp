@@ -1,10 +1,14 @@
 #include "lancet/mesh/cut/part_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "lancet/mesh/cut/element_cells.hpp"
+#include "lancet/mesh/cut/front_line.hpp"
 
 namespace lancet::mesh {
 
@@ -12,7 +16,8 @@ namespace {
 
 class Builder {
   public:
-    explicit Builder(const CutMesh& cut) : cut_(cut), point_of_copy_(cut.node_of_copy().size(), -1) {}
+    Builder(const CutMesh& cut, const FrontBlend& blend)
+        : cut_(cut), blend_(blend), point_of_copy_(cut.node_of_copy().size(), -1) {}
 
     PartGeometry build() {
         for (std::size_t part = 0; part < cut_.parts().size(); ++part) {
@@ -35,6 +40,33 @@ class Builder {
             geometry_.points.push_back(at);
         }
         return point;
+    }
+
+    std::int32_t add_point(const MaterialPoint& point, int side) {
+        const auto number = static_cast<std::int32_t>(geometry_.points.size());
+        geometry_.points.push_back(point);
+        if (blend_.opening(point.part) != nullptr) {
+            geometry_.opened.push_back({number, blend_.hold(cut_, point, side)});
+        }
+        return number;
+    }
+
+    /// The side of a blended front on which a cell lies.
+    static int side_of(const Cell& cell, const PlanePool& pool, const PartOpening& opening) {
+        double sum = 0;
+        for (const Cell::Face& face : cell.faces) {
+            for (const int point : face.points) sum += opening.guide_at(pool.coordinates(point));
+        }
+        return sum < 0 ? -1 : 1;
+    }
+
+    /// The side of one of its points: on the plane of the cut, that of the cell; 0 where the cut ends.
+    static int side_of(const Barycentric& place, int side_of_cell, const PartOpening& opening, const FrontLine& front) {
+        double largest = 0;
+        for (const double value : opening.guide) largest = std::max(largest, std::abs(value));
+        const double value = opening.guide_at(place);
+        if (std::abs(value) > 1e-9 * largest) return value < 0 ? -1 : 1;
+        return front.holds(place) ? 0 : side_of_cell;
     }
 
     void add_triangle(const Triangle& triangle, std::int32_t part, bool is_wall) {
@@ -60,19 +92,24 @@ class Builder {
         const ElementCells& cells = *cut_.cells(element);
         const PlanePool& pool = cells.pool();
         const std::vector<std::int32_t> parts = cut_.parts_of_element(element);
-        std::map<std::pair<std::int32_t, int>, std::int32_t> numbers;
+        std::map<std::tuple<std::int32_t, int, int>, std::int32_t> numbers;  // by part, point and side
+        const bool is_open =
+            std::ranges::any_of(parts, [&](std::int32_t part) { return blend_.opening(part) != nullptr; });
+        const std::optional<FrontLine> front = is_open ? std::optional(FrontLine(cut_, element)) : std::nullopt;
         for (std::size_t c = 0; c < cells.cells(); ++c) {
             const Cell& cell = cells.cell(c);
             const std::int32_t part = parts[static_cast<std::size_t>(cells.part_of_cell(c))];
+            const PartOpening* opening = blend_.opening(part);
+            const int side_of_cell = opening == nullptr ? 1 : side_of(cell, pool, *opening);
             const auto number = [&](int point) {
-                const auto [place, is_new] = numbers.try_emplace({part, point}, 0);
-                if (!is_new) return place->second;
                 const Barycentric& weights = pool.coordinates(point);
-                const auto corner = std::ranges::find(weights, 1.0) - weights.begin();
-                if (corner < 4) return place->second = point_at(part, static_cast<std::size_t>(corner));
-                place->second = static_cast<std::int32_t>(geometry_.points.size());
-                geometry_.points.push_back({part, weights});
-                return place->second;
+                const int side = opening == nullptr ? 1 : side_of(weights, side_of_cell, *opening, *front);
+                const auto [place, is_new] = numbers.try_emplace({part, point, side}, 0);
+                if (!is_new) return place->second;
+                const auto corner = static_cast<std::size_t>(std::ranges::find(weights, 1.0) - weights.begin());
+                const bool is_copy = corner < 4 && (opening == nullptr || opening->corners[corner].openness == 0 ||
+                                                    opening->corners[corner].near_side == side);
+                return place->second = is_copy ? point_at(part, corner) : add_point({part, weights}, side);
             };
             const int apex = cell.faces.front().points.front();
             for (const Cell::Face& face : cell.faces) {
@@ -95,14 +132,15 @@ class Builder {
     }
 
     const CutMesh& cut_;
+    const FrontBlend& blend_;
     PartGeometry geometry_;
     std::vector<std::int32_t> point_of_copy_;
 };
 
 }  // namespace
 
-PartGeometry part_geometry(const CutMesh& cut) {
-    return Builder(cut).build();
+PartGeometry part_geometry(const CutMesh& cut, const FrontBlend& blend) {
+    return Builder(cut, blend).build();
 }
 
 std::vector<Point> place(const PartGeometry& geometry, const CutMesh& cut, std::span<const Point> positions) {
@@ -116,6 +154,9 @@ std::vector<Point> place(const PartGeometry& geometry, const CutMesh& cut, std::
             for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += point.weights[corner] * x[axis];
         }
         places.push_back(at);
+    }
+    for (const PartGeometry::OpenedPoint& opened : geometry.opened) {
+        places[static_cast<std::size_t>(opened.point)] = opened.hold.place(positions);
     }
     return places;
 }

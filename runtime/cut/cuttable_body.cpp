@@ -92,7 +92,7 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
     }
     const double start = steady_seconds();
     std::vector<std::int32_t> opened_from;
-    Scene scene = divided(scene_, mesh, options_.fronts, &opened_from);
+    Scene scene = divided(scene_, mesh, options_.fronts, &opened_from, options_.smallest_fraction);
     update.crumbs = crumbs(scene, options_.largest_crumb);
     if (options_.crumbs == CrumbTreatment::drop) take_weight(scene, update.crumbs);
     std::vector<Point> loads = external_loads(scene);
@@ -102,6 +102,7 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
 
     mesh_ = std::move(mesh);
     opened_from_ = std::move(opened_from);
+    blend_ = mesh::FrontBlend(mesh_, options_.fronts);
     body_ = std::move(body);
     scene_loads_ = std::move(loads);
     apply_loads();
@@ -159,11 +160,10 @@ void CuttableBody::set_point_loads(std::span<const PointLoad> loads) {
 std::vector<Point> CuttableBody::loads() const {
     std::vector<Point> loads = scene_loads_;
     for (const PointLoad& load : point_loads_) {
-        const mesh::MaterialPoint point = mesh_.material_point(load.element, load.place);
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const std::int32_t copy = mesh_.parts()[static_cast<std::size_t>(point.part)][corner];
+        const mesh::CopyWeights hold = blend_.hold(mesh_, mesh_.material_point(load.element, load.place));
+        for (std::size_t i = 0; i < static_cast<std::size_t>(hold.count); ++i) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                loads[static_cast<std::size_t>(copy)][axis] += point.weights[corner] * load.force[axis];
+                loads[static_cast<std::size_t>(hold.copies[i])][axis] += hold.weights[i] * load.force[axis];
             }
         }
     }
@@ -175,17 +175,9 @@ void CuttableBody::apply_loads() {
 }
 
 Point CuttableBody::position(std::int32_t element, const mesh::Barycentric& place) const {
-    const mesh::MaterialPoint point = mesh_.material_point(element, place);
     std::vector<Point> positions(body_->nodes());
     body_->positions(positions);
-    Point at{};
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-        const std::int32_t copy = mesh_.parts()[static_cast<std::size_t>(point.part)][corner];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            at[axis] += point.weights[corner] * positions[static_cast<std::size_t>(copy)][axis];
-        }
-    }
-    return at;
+    return blend_.hold(mesh_, mesh_.material_point(element, place)).place(positions);
 }
 
 }  // namespace lancet::runtime

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/mesh/cut/front_blend.hpp"
 #include "lancet/mesh/cut/lanes.hpp"
 #include "lancet/runtime/cut/crumbs.hpp"
 #include "lancet/runtime/simulate/body.hpp"
@@ -30,6 +31,8 @@ struct CutOptions {
     mesh::Fronts fronts = mesh::Fronts::sharp;
     CrumbTreatment crumbs = CrumbTreatment::keep;
     double largest_crumb = 0.01;  ///< of the body's volume
+    /// Parts of less of their element are taken as thick as this; see mesh::raise_fractions. Nothing needs it.
+    double smallest_fraction = 0;
 };
 
 /// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated
@@ -51,6 +54,8 @@ class CuttableBody {
     /// Parts and copies as they are now. The nodes of the body are the copies, in their order, and then those that open
     /// at blended fronts.
     const mesh::CutMesh& mesh() const noexcept { return mesh_; }
+    /// Where points of the material are beside blended fronts.
+    const mesh::FrontBlend& blend() const noexcept { return blend_; }
     /// The body as it is now; the next cut replaces it. What is held or loaded through it is forgotten by then.
     DeformableBody& body() noexcept { return *body_; }
     const DeformableBody& body() const noexcept { return *body_; }
@@ -84,6 +89,7 @@ class CuttableBody {
     CutOptions options_;
     mesh::CutMesh mesh_;
     std::vector<std::int32_t> opened_from_;  ///< see mesh::Lanes
+    mesh::FrontBlend blend_;
     std::unique_ptr<DeformableBody> body_;
     std::vector<Point> scene_loads_;  ///< the scene's own, of each copy
     std::map<std::int32_t, Point> holds_;

@@ -15,7 +15,7 @@ namespace lancet::runtime {
 
 namespace {
 
-constexpr double smallest_fraction = 1e-20;
+constexpr double thinnest = 1e-20;
 
 /// The lanes as elements, with their moments.
 void take_lanes(const Scene& scene, const mesh::Lanes& lanes, Scene& divided, mesh::TetMesh::Definition& definition) {
@@ -24,8 +24,7 @@ void take_lanes(const Scene& scene, const mesh::Lanes& lanes, Scene& divided, me
         if (!is_whole && divided.parts.empty()) divided.parts.place.assign(lanes.lanes.size(), -1);
         if (!is_whole) {
             divided.parts.place[definition.tetrahedra.size()] = static_cast<std::int32_t>(divided.parts.moments.size());
-            divided.parts.moments.push_back(lane.moments.fraction < smallest_fraction ? smallest_moments()
-                                                                                      : lane.moments);
+            divided.parts.moments.push_back(lane.moments.fraction < thinnest ? smallest_moments() : lane.moments);
         }
         definition.tetrahedra.push_back(lane.copies);
         definition.regions.push_back(scene.mesh.regions()[static_cast<std::size_t>(lane.element)]);
@@ -87,12 +86,12 @@ bool spread(const mesh::CutMesh& cut, const std::array<std::int32_t, Count>& nod
 
 mesh::PartMoments smallest_moments() {
     mesh::PartMoments moments = mesh::empty_moments();
-    add_weighted(moments, mesh::PartMoments{}, smallest_fraction);
+    add_weighted(moments, mesh::PartMoments{}, thinnest);
     return moments;
 }
 
-Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts,
-              std::vector<std::int32_t>* opened_from) {
+Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts, std::vector<std::int32_t>* opened_from,
+              double smallest_fraction) {
     if (!scene.parts.empty()) throw Error("cuts: the scene has been divided before; divide the one without cuts");
     if (scene.mesh.nodes().size() != cut.mesh().nodes().size() ||
         !std::ranges::equal(scene.mesh.tetrahedra(), cut.mesh().tetrahedra())) {
@@ -103,7 +102,8 @@ Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts,
     Scene result = scene;
     mesh::TetMesh::Definition definition;
     definition.region_names = scene.mesh.region_names();
-    const mesh::Lanes lanes = mesh::lanes(cut, fronts);
+    mesh::Lanes lanes = mesh::lanes(cut, fronts);
+    raise_fractions(lanes, smallest_fraction);
     if (opened_from != nullptr) *opened_from = lanes.opened_from;
     take_lanes(scene, lanes, result, definition);
     std::map<std::int32_t, std::vector<std::int32_t>> opening;

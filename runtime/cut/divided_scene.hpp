@@ -13,11 +13,12 @@ namespace lancet::runtime {
 /// what lies on an edge or a triangle goes to the parts there, and a force on a node to the copy that holds the node.
 /// On parts around a blended front they act as if it were closed.
 ///
-/// `opened_from`, where it is asked for, becomes that of the lanes.
+/// `opened_from`, where it is asked for, becomes that of the lanes. Lanes of less than `smallest_fraction` are raised
+/// to it, see mesh::raise_fractions.
 ///
 /// Throws lancet::Error where the cut mesh is not that of the scene, or the scene has been divided before.
 Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts = mesh::Fronts::sharp,
-              std::vector<std::int32_t>* opened_from = nullptr);
+              std::vector<std::int32_t>* opened_from = nullptr, double smallest_fraction = 0);
 
 /// What thinner parts are taken as: 1e-20 of an element, far below the rounding of every sum that it enters, and thick
 /// enough that a float holds its stiffness.

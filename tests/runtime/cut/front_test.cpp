@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -177,6 +178,30 @@ TEST(Front, NothingOpensWhereNoCutEnds) {
     CutMesh cut(mesh::box({.cells = {4, 4, 4}}));
     cut.cut(CutSurface::plane({0.3, 0, 0}, {1, 0.2, 0.1}));
     EXPECT_TRUE(mesh::lanes(cut, Fronts::blended).opened_from.empty());
+}
+
+// Where several cuts end around a node, all parts of a copy may lie on one side of the plane that it would open along.
+TEST(Front, EveryCopyHasALaneHoweverManyCutsEndThere) {
+    int opening = 0;
+    for (int seed = 0; seed < 200; ++seed) {
+        std::mt19937 bits(static_cast<unsigned>(seed));
+        const auto random = [&bits] { return static_cast<double>(bits() >> 8) * 0x1p-24; };
+        CutMesh cut(mesh::box({.cells = {2, 2, 2}, .split = seed % 2 == 0 ? mesh::Split::five : mesh::Split::six}));
+        for (int k = 0; k < 5; ++k) {
+            const Point border{0.3 + 0.4 * random(), 0.3 + 0.4 * random(), 0.3 + 0.4 * random()};
+            cut.cut(CutSurface::half_plane(border, {random() - 0.5, random() - 0.5, 1}, {random() - 0.5, 1, 0}));
+        }
+        const mesh::Lanes lanes = mesh::lanes(cut, Fronts::blended);
+        std::vector<double> share(lanes.node_of_copy.size(), 0.0);
+        for (const mesh::Lanes::Lane& lane : lanes.lanes) {
+            for (const std::int32_t copy : lane.copies) {
+                share[static_cast<std::size_t>(copy)] += lane.moments.fraction;
+            }
+        }
+        for (const double value : share) EXPECT_GT(value, 0) << seed;
+        opening += static_cast<int>(lanes.opened_from.size());
+    }
+    EXPECT_GT(opening, 0);
 }
 
 TEST(Front, ABodyWithABlendedFrontKeepsItsMomentumAndComesApart) {
