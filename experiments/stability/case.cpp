@@ -22,6 +22,7 @@ std::string case_name(const Category& category, const Variant& variant) {
     };
     add(variant.detail);
     if (variant.enrichment != runtime::Enrichment::substituted) add(to_string(variant.enrichment));
+    if (variant.fronts == mesh::Fronts::blended) add(to_string(variant.fronts));
     add(variant.lumping_name());
     add(kernels::to_string(variant.model));
     add(to_string(variant.scalar));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lancet/mesh/cut/lanes.hpp"
 #include "lancet/runtime/cut/enrichment.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/simulate/settings.hpp"
@@ -29,6 +30,7 @@ struct Variant {
     std::string detail{};  ///< what is special to the category; may be empty
     double number = 0;     ///< that goes with the detail
     runtime::Enrichment enrichment = runtime::Enrichment::substituted;
+    mesh::Fronts fronts = mesh::Fronts::sharp;
     /// Masses; nothing where the category chooses them in words of its own, see `lumping`.
     runtime::MassKind mass = runtime::MassKind::lumped;
     std::string lumping{};  ///< instead of `mass`, for what bodies do not have

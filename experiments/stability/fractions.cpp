@@ -77,11 +77,11 @@ runtime::Scene without_slivers(const runtime::Scene& scene, const Blade& blade) 
 }
 
 /// Copies all whose parts together are less than a tenth of an element.
-std::vector<bool> thin_copies(const CutMesh& cut) {
-    std::vector<double> share(cut.node_of_copy().size(), 0.0);
-    for (std::size_t p = 0; p < cut.parts().size(); ++p) {
-        for (const std::int32_t copy : cut.parts()[p]) {
-            share[static_cast<std::size_t>(copy)] += cut.moments(static_cast<std::int32_t>(p)).fraction;
+std::vector<bool> thin_copies(const runtime::Scene& parts) {
+    std::vector<double> share(parts.mesh.nodes().size(), 0.0);
+    for (std::size_t e = 0; e < parts.mesh.tetrahedra().size(); ++e) {
+        for (const std::int32_t copy : parts.mesh.tetrahedra()[e]) {
+            share[static_cast<std::size_t>(copy)] += parts.parts.of(e).fraction;
         }
     }
     std::vector<bool> thin;
@@ -130,7 +130,7 @@ Verdict run(const Variant& variant, std::uint64_t seed, runtime::Scheduler& sche
     const Blade blade(random);
     const CutMesh cut = cut_with_fraction(scene, variant.number, blade);
     judge_cut(cut, verdict);
-    const runtime::Scene parts = divided(scene, cut);
+    const runtime::Scene parts = divided(scene, cut, variant.fronts);
     verdict.body =
         std::string(blade.is_through ? "cut in two" : "cut inside") + ", thinnest part " + number(thinnest_part(cut));
 
@@ -150,7 +150,7 @@ Verdict run(const Variant& variant, std::uint64_t seed, runtime::Scheduler& sche
         verdict.fail(number(found.iterations) + " iterations; " + number(plain.iterations) + " without slivers");
     }
 
-    const std::vector<bool> thin = thin_copies(cut);
+    const std::vector<bool> thin = thin_copies(parts);
     double scale = 0, error = 0, thin_error = 0;
     for (std::size_t n = 0; n < thin.size(); ++n) {
         const Point &rest = parts.mesh.nodes()[n], &right = reference.displacements[n], &is = found.displacements[n];
@@ -207,6 +207,7 @@ Category fractions() {
             }
         }
     }
+    category.variants = with_both_fronts(category.variants);
     category.cases = static_cast<int>(category.variants.size());
     category.quick_cases = 42;
     return category;

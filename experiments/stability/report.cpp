@@ -56,11 +56,12 @@ std::string time_of(const Variant& variant) {
 }
 
 /// Details and solvers together, as far as they do not tell what survives: the words of a row.
-using Key = std::array<std::string, 6>;
+using Key = std::array<std::string, 7>;
 Key key_of(const Outcome& outcome) {
     const Variant& v = variant_of(outcome);
     return {v.detail,
             std::string(to_string(v.enrichment)),
+            v.has_dynamics ? std::string(to_string(v.fronts)) : "-",
             v.lumping_name(),
             std::string(kernels::to_string(v.model)),
             std::string(to_string(v.scalar)),
@@ -103,6 +104,7 @@ Table survival_table(std::span<const Outcome> outcomes) {
     Table table({{"category", "category"},
                  {"detail", "detail"},
                  {"enrichment", "enrichment"},
+                 {"fronts", "fronts"},
                  {"lumping", "lumping"},
                  {"material", "material"},
                  {"scalar", "scalar"},
@@ -127,7 +129,7 @@ Table survival_table(std::span<const Outcome> outcomes) {
         std::ranges::sort(order);
         for (const Key& key : order) {
             const Count& count = counts.at(key);
-            table.add_row({categories()[c].name, key[0], key[1], key[2], key[3], key[4], key[5], count.run,
+            table.add_row({categories()[c].name, key[0], key[1], key[2], key[3], key[4], key[5], key[6], count.run,
                            count.survived, count.run - count.survived, std::string(count.is_promised ? "yes" : "no"),
                            cell(count.iterations), cell(count.ratio), cell(count.error), cell(count.excess)});
         }

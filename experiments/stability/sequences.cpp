@@ -1,5 +1,5 @@
-// Random cuts of random bodies: through nodes, along edges and faces, one unit in the last place beside, at rest and
-// where the body has moved; then 200 steps under gravity.
+// Random cuts of random bodies, with either kind of fronts: through nodes, along edges and faces, one unit in the last
+// place beside, at rest and where the body has moved; then 200 steps under gravity.
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +125,7 @@ Verdict run(const Variant& variant, std::uint64_t seed, runtime::Scheduler& sche
     const runtime::Scene scene = random_scene(random_mesh(random), random);
     CutMesh cut(scene.mesh);
     cut_at_random(cut, random, verdict);
-    const runtime::Scene parts = divided(scene, cut);
+    const runtime::Scene parts = divided(scene, cut, variant.fronts);
     runtime::Settings settings = settings_of(variant, scene, scheduler, random.logarithmic(1e-3, 0.1));
     if (random.chance(0.5)) settings.conjugate_gradients = {.iterations = 300, .tolerance = 1e-5};
     verdict.body = describe(cut, settings);
@@ -145,7 +145,8 @@ Verdict run(const Variant& variant, std::uint64_t seed, runtime::Scheduler& sche
 Category sequences() {
     return {.name = "sequences",
             .criterion =
-                "Up to eight random cuts: parts are not negative and add up to their elements within 2^-45, every copy "
+                "Up to eight random cuts, with sharp or blended fronts: parts are not negative and add up to their "
+                "elements within 2^-45, every copy "
                 "has mass, and the mass of all is the body's within 1e-12. Then 200 steps under gravity, implicit of 1 "
                 "to 100 ms, or explicit of 0.95 of the uncut elements' own critical step (explicit) or of the "
                 "assembled body's (explicit-assembled): finite, and the energy is at most what was there and the loads "
@@ -156,7 +157,7 @@ Category sequences() {
                 "explicit-assembled, whose step is longer, for neighbours hold each other back, and is refused where "
                 "the cut body's is shorter; and explicit St. Venant-Kirchhoff, whose stiffness, and so whose critical "
                 "step, changes with strain.",
-            .variants = all_dynamics(),
+            .variants = with_both_fronts(all_dynamics()),
             .cases = 10000,
             .quick_cases = 140,
             .run = run};

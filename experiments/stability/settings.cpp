@@ -91,4 +91,15 @@ std::vector<Variant> all_dynamics() {
     return variants;
 }
 
+std::vector<Variant> with_both_fronts(const std::vector<Variant>& variants) {
+    std::vector<Variant> both;
+    for (Variant variant : variants) {
+        for (const mesh::Fronts fronts : {mesh::Fronts::sharp, mesh::Fronts::blended}) {
+            variant.fronts = fronts;
+            both.push_back(variant);
+        }
+    }
+    return both;
+}
+
 }  // namespace lancet::experiments::stability

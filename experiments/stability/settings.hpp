@@ -17,4 +17,7 @@ runtime::EquilibriumSettings equilibrium_settings_of(const Variant& variant);
 /// both critical steps.
 std::vector<Variant> all_dynamics();
 
+/// Each variant with sharp fronts, and with blended ones.
+std::vector<Variant> with_both_fronts(const std::vector<Variant>& variants);
+
 }  // namespace lancet::experiments::stability
