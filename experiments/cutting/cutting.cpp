@@ -9,6 +9,7 @@
 #include "lancet/experiments/common/progress.hpp"
 #include "lancet/experiments/cutting/beam_cut.hpp"
 #include "lancet/experiments/cutting/cost.hpp"
+#include "lancet/experiments/cutting/fraction_floor.hpp"
 #include "lancet/experiments/cutting/frames.hpp"
 #include "lancet/experiments/cutting/motion.hpp"
 #include "lancet/experiments/cutting/picture.hpp"
@@ -128,6 +129,9 @@ constexpr std::array<std::string_view, 12> beam_keys{"variant",      "model",   
                                                      "unknowns",     "added_dofs",   "ms_geometry", "ms_solve",
                                                      "error_energy", "order_energy", "error_l2",    "order_l2"};
 
+constexpr std::array<std::string_view, 6> floor_keys{"variant",       "elements", "cut_elements",
+                                                     "cg_iterations", "error_l2", "error_energy"};
+
 std::vector<Row> study_scene(const std::string& name, const Study& study, const CuttingSettings& settings,
                              Progress& progress, std::set<std::string>& complaints) {
     if (name == "cost") {
@@ -147,9 +151,17 @@ std::vector<Row> study_scene(const std::string& name, const Study& study, const 
               beam_keys);
         return rows;
     }
+    if (name == "fraction-floor") {
+        std::vector<Row> rows = measure_fraction_floor(*study.scheduler, study.is_quick, progress);
+        progress.clear();
+        print(
+            "Floor under the fractions of thin parts: a block cut in two beside its nodes, against one cut along them",
+            rows, floor_keys);
+        return rows;
+    }
     const Scenario scenario = name == "dissected-beam" ? dissected_beam(study.is_quick)
                               : name == "organ"        ? organ(settings.organ, study.is_quick)
-                                                       : scalpel(study.is_quick);
+                                                       : scalpel(study.is_quick, *study.scheduler);
     const Motion motion = measure_motion(scenario, study, progress);
     progress.show(name + ": pictures");
     complaints.insert(show(scenario, study, settings));
@@ -170,9 +182,11 @@ ExitCode body(int argc, const char* const* argv) {
     if (!settings) return ExitCode::success;
     const auto scheduler = runtime::make_scheduler(settings->scheduler, settings->threads);
     Progress progress;
-    const auto is_statics = [](const std::string& name) { return name.starts_with("beam-case"); };
+    const auto is_statics = [](const std::string& name) {
+        return name.starts_with("beam-case") || name == "fraction-floor";
+    };
     // Statics time nothing that the cost of cut elements would explain.
-    Study study{.scheduler = scheduler.get()};
+    Study study{.is_quick = settings->shared.quick, .scheduler = scheduler.get()};
     nlohmann::ordered_json lanes = nlohmann::ordered_json::array();
     if (!std::ranges::all_of(settings->scenes, is_statics)) {
         study = make_study(*settings, *scheduler, progress);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "lancet/experiments/common/organ_mesh.hpp"
@@ -112,30 +111,6 @@ runtime::Scene bar(bool is_quick) {
     scene.fixed_nodes = nodes_where(scene.mesh, [](const Point& p) { return p[0] == 0; });
     scene.materials = {{0, {.young_modulus = 1e5, .poisson_ratio = 0.33, .density = 100}}};
     return scene;
-}
-
-Scenario scalpel(bool is_quick) {
-    Scenario scenario{.name = "scalpel",
-                      .title = "Scalpel: a blade goes through the Bar from above, on an arc, while the Bar swings",
-                      .scene = bar(is_quick),
-                      .time_step = 0.04,
-                      .steps = is_quick ? 20 : 60};
-    const int strokes = is_quick ? 8 : 30, first = is_quick ? 4 : 10;
-    // The blade is as long as the Bar is wide and goes down a quarter of a circle, to 0.45 m below the top.
-    const auto blade = [&](int place) {
-        const double angle = 0.5 * std::numbers::pi * place / strokes;
-        const double x = 1.3 + 0.5 * std::sin(angle), y = 0.35 + 0.5 * std::cos(angle);
-        return std::array<Point, 2>{Point{x, y, -0.1}, Point{x, y, 0.9}};
-    };
-    for (int k = 0; k < strokes; ++k) {
-        const std::array places{blade(k), blade(k + 1)};
-        scenario.strokes.push_back({first + k, mesh::CutSurface::swept(places)});
-    }
-    scenario.view = {.axes = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}},
-                     .elevation = 72,
-                     .azimuth = 25,
-                     .steps = {first, first + strokes / 2, first + strokes, scenario.steps}};
-    return scenario;
 }
 
 }  // namespace lancet::experiments::cutting

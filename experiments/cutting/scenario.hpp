@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/simulate/scene.hpp"
 
 namespace lancet::experiments::cutting {
 
 using mesh::Point;
 
-/// A cut of a moving body. Its surface is given at rest, as a line drawn on the body that the blade follows: strokes
-/// that share the places of the blade then leave no gap, however the body moves between them, and every arithmetic cuts
-/// the same, so that what it gets wrong can be told.
+/// A cut of a moving body. Its surface is given at rest: strokes that share the places of the blade then leave no gap,
+/// however the body moves between them, and every arithmetic cuts the same, so that what it gets wrong can be told.
 struct Stroke {
     int step = 0;  ///< it is made before this step
     mesh::CutSurface surface;
@@ -54,8 +54,9 @@ struct OrganFile {
 /// lancet::Error for a file that cannot be read and a scale that is not positive.
 [[nodiscard]] Scenario organ(const std::optional<OrganFile>& file, bool is_quick);
 
-/// The Bar, through which a blade goes from above while it swings.
-[[nodiscard]] Scenario scalpel(bool is_quick);
+/// The Bar, through which a blade goes from above while it swings. The strokes are those of a runtime::Blade in the
+/// hand of somebody who follows the Bar, found by a run in double.
+[[nodiscard]] Scenario scalpel(bool is_quick, runtime::Scheduler& scheduler);
 
 /// The Bar at rest, clamped at x = 0: 40 x 8 x 8 cells of 0.1 m, or half as many along each axis.
 [[nodiscard]] runtime::Scene bar(bool is_quick);

@@ -19,8 +19,8 @@ Value only(const std::vector<Value>& list, const Value& otherwise, const std::st
 }  // namespace
 
 const std::vector<std::string>& scene_names() {
-    static const std::vector<std::string> names{"dissected-beam", "organ",       "scalpel",    "cost",
-                                                "beam-case1",     "beam-case2T", "beam-case3T"};
+    static const std::vector<std::string> names{"dissected-beam", "organ",       "scalpel",     "cost",
+                                                "beam-case1",     "beam-case2T", "beam-case3T", "fraction-floor"};
     return names;
 }
 

@@ -89,10 +89,10 @@ void Blade::place(const CuttableBody& body, const Point& heel, const Point& tip)
     edge_ = std::move(edge);
 }
 
-CutUpdate Blade::draw(CuttableBody& body, Scheduler& scheduler, const Point& heel, const Point& tip) {
+std::optional<mesh::CutSurface> Blade::sweep(const CuttableBody& body, const Point& heel, const Point& tip) {
     const std::vector<Point> before = edge_;
     place(body, heel, tip);
-    if (before.empty() || before == edge_) return {};
+    if (before.empty() || before == edge_) return std::nullopt;
     std::vector<Point> vertices = before;
     vertices.insert(vertices.end(), edge_.begin(), edge_.end());
     std::vector<mesh::Triangle> triangles;
@@ -101,8 +101,15 @@ CutUpdate Blade::draw(CuttableBody& body, Scheduler& scheduler, const Point& hee
         triangles.push_back({k, next, moved + 1});
         triangles.push_back({k, moved + 1, moved});
     }
+    return mesh::CutSurface::triangulated(vertices, triangles);
+}
+
+CutUpdate Blade::draw(CuttableBody& body, Scheduler& scheduler, const Point& heel, const Point& tip) {
+    const std::vector<Point> before = edge_;
+    const std::optional<mesh::CutSurface> surface = sweep(body, heel, tip);
+    if (!surface) return {};
     try {
-        return body.cut(scheduler, mesh::CutSurface::triangulated(vertices, triangles), Configuration::rest);
+        return body.cut(scheduler, *surface, Configuration::rest);
     } catch (...) {
         edge_ = before;
         throw;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lancet/runtime/cut/cuttable_body.hpp"
@@ -18,6 +19,9 @@ class Blade {
 
     /// Puts the edge somewhere, without cutting. Throws lancet::Error for places that are not finite.
     void place(const CuttableBody& body, const Point& heel, const Point& tip);
+    /// Moves the edge to a place, and tells what it sweeps through the material on the way: a surface at rest. Nothing
+    /// on the first call, and where the edge stays.
+    std::optional<mesh::CutSurface> sweep(const CuttableBody& body, const Point& heel, const Point& tip);
     /// Draws the edge on to a place, from where it was last, and cuts what lies between; the first call only places it.
     CutUpdate draw(CuttableBody& body, Scheduler& scheduler, const Point& heel, const Point& tip);
     /// Takes the blade away: the next draw starts anew.

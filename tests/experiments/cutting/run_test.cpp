@@ -13,15 +13,15 @@
 namespace lancet::experiments::cutting {
 namespace {
 
-Scenario short_scalpel() {
-    Scenario scenario = scalpel(true);
+Scenario short_scalpel(runtime::Scheduler& scheduler) {
+    Scenario scenario = scalpel(true, scheduler);
     scenario.steps = 8;
     return scenario;
 }
 
 TEST(CuttingRun, CountsGrowWithTheCutAndTimesAreThoseOfTheCut) {
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
-    const Scenario scenario = short_scalpel();
+    const Scenario scenario = short_scalpel(*scheduler);
     int observed = 0;
     const auto frames = run(scenario, interactive_settings({}, scenario.time_step), *scheduler,
                             [&](int step, const runtime::CuttableBody&) { EXPECT_EQ(step, observed++); });
@@ -54,7 +54,7 @@ TEST(CuttingRun, TheErrorAgainstItselfIsZeroAndThatOfAShiftIsItsLength) {
 
 TEST(CuttingRun, TheConvergedRunDoesNotDependOnItsTolerance) {
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
-    const Scenario scenario = short_scalpel();
+    const Scenario scenario = short_scalpel(*scheduler);
     runtime::Settings settings = converged_settings(scenario.time_step, kernels::active_instruction_set());
     std::vector<Point> rest;
     const auto frames = run(scenario, settings, *scheduler,
@@ -75,7 +75,7 @@ TEST(CuttingMotion, EveryRunIsBesideTheUncutOne) {
                       .is_quick = true,
                       .scheduler = scheduler.get()};
     Progress progress;
-    const Scenario scenario = short_scalpel();
+    const Scenario scenario = short_scalpel(*scheduler);
     const Motion motion = measure_motion(scenario, study, progress);
     ASSERT_EQ(motion.runs.size(), 6U);
     EXPECT_EQ(motion.frames.size(), 2U * 2 * 8);

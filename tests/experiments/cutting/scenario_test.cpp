@@ -52,7 +52,8 @@ TEST(CuttingScenario, TheOrganIsOneClosedBody) {
 }
 
 TEST(CuttingScenario, EveryScenarioCutsElementsAndSeparatesNothing) {
-    for (const Scenario& scenario : {dissected_beam(true), organ({}, true), scalpel(true)}) {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    for (const Scenario& scenario : {dissected_beam(true), organ({}, true), scalpel(true, *scheduler)}) {
         SCOPED_TRACE(scenario.name);
         EXPECT_FALSE(scenario.scene.fixed_nodes.empty());
         mesh::CutMesh cut(scenario.scene.mesh);
