@@ -69,7 +69,9 @@ struct EquilibriumReport {
 /// far from the solution (Eisenstat and Walker 1996, choice 2). A load step that does not converge, or on which the
 /// tangent shows itself indefinite, is halved from the last equilibrium; when it becomes too small the search ends, and
 /// says why. `positions`, in the mesh's order, hold the start (the rest positions, or a guess) and take the result: the
-/// last equilibrium that was found.
+/// last equilibrium that was found. All in float, rounding of the forces may hide a residual that is still large, with
+/// stiff inclusions, nearly incompressible materials or flat elements: the search then ends as stagnated where it is,
+/// with the residual it has reached, and its explanation says so.
 ///
 /// Throws lancet::Error for a scene or settings that make no sense, for one with parts and no preconditioner (unless
 /// settings.force_preconditioner), for a floor, and for components that nothing holds

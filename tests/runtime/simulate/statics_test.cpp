@@ -93,6 +93,37 @@ TEST(Statics, AColumnLosesItsStabilityAtItsBucklingLoad) {
     }
 }
 
+TEST(Statics, RoundingInFloatIsNamedWhereItIsWhatStopsTheSearch) {
+    runtime::Scene scene = box({6, 2, 2}, {1, 1.0 / 3, 1.0 / 3});
+    clamp(scene, "x_min");
+    scene.gravity = {0, -9.81, 0};
+    runtime::Material hard = scene.materials.at(0);
+    hard.young_modulus *= 1e6;
+    scene.materials[1] = hard;
+    auto definition = scene.mesh.definition();
+    for (std::size_t e = 0; e < definition.regions.size(); ++e) definition.regions[e] = e % 3 == 0 ? 1 : 0;
+    scene.mesh = mesh::TetMesh(std::move(definition));
+    runtime::EquilibriumSettings settings;
+    settings.tolerance = 1e-4;
+    settings.scalar = runtime::ScalarMode::single_precision;
+    const Found single = find(scene, settings);
+    EXPECT_EQ(single.report.end, EquilibriumEnd::stagnated);
+    EXPECT_GT(single.report.residual, settings.tolerance);
+    EXPECT_THAT(single.report.explanation, testing::HasSubstr("stagnated at a residual of"));
+    EXPECT_THAT(single.report.explanation, testing::HasSubstr("mixed or double"));
+    EXPECT_EQ(single.report.load_steps, 0);  // smaller loads are not tried: they only drown sooner
+    settings.scalar = runtime::ScalarMode::double_precision;
+    EXPECT_EQ(find(scene, settings).report.end, EquilibriumEnd::converged);
+    // What is no matter of rounding is still called what it is: a column under twice its buckling load.
+    runtime::Scene column = box({20, 2, 2}, {1, 0.1, 0.1});
+    clamp(column, "x_min");
+    column.tractions = {pull_end(column.mesh, {-2 * M_PI * M_PI / 4 * young * 0.01 / 12, 0, 0})};
+    settings.scalar = runtime::ScalarMode::single_precision;
+    settings.tolerance = 1e-3;
+    const Found buckled = find(column, settings);
+    EXPECT_THAT(buckled.report.explanation, testing::Not(testing::HasSubstr("rounding")));
+}
+
 TEST(Statics, PrescribedDisplacementsAreReachedAndPulledBy) {
     // nu = 0.3, the ends sliding: uniaxial tension without any force given.
     runtime::Scene scene = box({4, 2, 2}, {1, 0.5, 0.5});
