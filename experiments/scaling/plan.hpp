@@ -17,7 +17,7 @@ struct Job {
     std::string scheduler;  ///< serial, openmp, tbb
     int threads = 1;
     std::string isa, scalar, matrix, scatter;
-    /// One block with all nodes, serial: elements add to nodes in the order of the mesh, without copies, colors, slots
+    /// One block with all nodes, serial: elements add to nodes one after the other, without copies, colors, slots
     /// or merging, with as fine a coarse space. What a program without threads would do, and so what threads have to
     /// beat.
     bool is_natural_order = false;

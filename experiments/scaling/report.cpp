@@ -1,5 +1,8 @@
 #include "lancet/experiments/scaling/report.hpp"
 
+#include <cmath>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "lancet/kernels/error.hpp"
@@ -27,8 +30,12 @@ void visit_fields(Given& report, const Visit& visit) {
 std::string to_line(const Report& report) {
     auto json = nlohmann::ordered_json::parse(bar::to_line(report.run));
     visit_fields(report, [&json](const char* name, const auto& value) { json[name] = value; });
-    json["error_percent"] =
-        report.error_percent ? nlohmann::ordered_json(*report.error_percent) : nlohmann::ordered_json();
+    auto& error = json["error_percent"];  // null where there is none
+    if (report.error_percent && std::isfinite(*report.error_percent)) {
+        error = *report.error_percent;
+    } else if (report.error_percent) {
+        error = "nan";  // a run that diverged: JSON has no number for it
+    }
     return json.dump();
 }
 
@@ -38,7 +45,9 @@ Report report_from_line(const std::string& line, const std::string& worker) {
     try {
         const nlohmann::json json = nlohmann::json::parse(line);
         visit_fields(report, [&json](const char* name, auto& value) { json.at(name).get_to(value); });
-        if (!json.at("error_percent").is_null()) report.error_percent = json.at("error_percent").get<double>();
+        const nlohmann::json& error = json.at("error_percent");
+        if (error.is_number()) report.error_percent = error.get<double>();
+        if (error.is_string()) report.error_percent = std::stod(error.get<std::string>());
     } catch (const std::exception& error) {
         throw Error(worker + ": '" + line.substr(0, 200) + "' printed, expected a report in JSON (" + error.what() +
                     ")");

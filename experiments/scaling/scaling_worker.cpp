@@ -113,6 +113,7 @@ Report simulate(const Benchmark& benchmark, const Options& options, bar::Snapsho
     const runtime::Scene scene = scene_of(benchmark);
     if (options.natural_order) settings.numbering = one_block(scene, settings);
     Report report;
+    report.cores = runtime::cores_allowed();  // before this thread may be held to one
     const double begin = runtime::steady_seconds();
     const auto scheduler = runtime::make_scheduler(runtime::scheduler_from_string(words.scheduler), words.threads);
     if (options.pin) report.pinned_threads = pin_threads(*scheduler);
@@ -158,7 +159,6 @@ Report simulate(const Benchmark& benchmark, const Options& options, bar::Snapsho
         const auto reference = bar::read_snapshots(options.reference, 1, body->nodes()).front();
         report.error_percent = bar::error_percent(problem, timed.positions_at_error_time, reference);
     }
-    report.cores = runtime::cores_allowed();
     const char* policy = std::getenv("OMP_WAIT_POLICY");
     report.omp_wait_policy = policy == nullptr ? "unset" : policy;
     if (options.limits) measure_limits(report, body->settings(), work.bytes, *scheduler);

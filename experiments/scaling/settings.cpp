@@ -91,7 +91,7 @@ void complete(ScalingSettings& settings) {
         kernels::require(kernels::instruction_set_from_string(name));
     }
     if (settings.steps == 0) settings.steps = is_quick ? 25 : 50;
-    if (settings.extra_rounds < 0) settings.extra_rounds = is_quick ? 0 : 5;
+    if (settings.extra_rounds < 0) settings.extra_rounds = is_quick ? 0 : 3;
     if (settings.repetitions == 0) settings.repetitions = is_quick ? 2 : 5;
 }
 
@@ -122,7 +122,7 @@ std::optional<ScalingSettings> parse_settings(int argc, const char* const* argv)
     app.add_option_function<std::string>(
            "--elements",
            [&settings](const std::string& text) { settings.elements = parse_counts("--elements", text, 100); },
-           "Sizes, a list of numbers of elements; of series weak for each thread")
+           "Sizes, a list of numbers of elements; series weak has the smallest for each thread, variants is of it too")
         ->type_name("LIST");
     app.add_option("--setting", settings.setting,
                    "default (10 iterations with the coarse space, linearised at the prediction) or original (10 plain "
@@ -133,7 +133,7 @@ std::optional<ScalingSettings> parse_settings(int argc, const char* const* argv)
     app.add_option("--repetitions", settings.repetitions, "Runs of every row, interleaved; 5, or 2 with --quick")
         ->check(CLI::Range(1, 1000));
     app.add_option("--extra-rounds", settings.extra_rounds,
-                   "More rounds, at most, for rows that the machine's load disturbed; 5, or none with --quick")
+                   "More rounds, at most, for rows that the machine's load disturbed; 3, or none with --quick")
         ->check(CLI::Range(0, 1000));
     app.add_flag("--pin", settings.pin,
                  "Hold every thread of every scheduler to a core: each asks for it (sched_setaffinity) in a loop that "

@@ -30,8 +30,9 @@ struct ScalingSettings {
 };
 
 /// - strong: the same size on more threads
-/// - weak: as many elements for each thread
-/// - variants: other instruction sets, scalar types, operators and scatter strategies, one at a time
+/// - weak: as many elements for each thread, of the smallest size
+/// - variants: other instruction sets, scalar types, operators and scatter strategies, one at a time, on the first
+///   benchmark in its smallest size
 /// - thesis: the whole runs of the original, in its setting
 [[nodiscard]] const std::vector<std::string>& series_names();
 

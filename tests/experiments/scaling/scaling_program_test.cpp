@@ -108,7 +108,10 @@ TEST(ScalingProgram, HoldsThreadsToCoresAndDrawsPictures) {
     const auto json = nlohmann::json::parse(std::ifstream(json_file));
     for (const auto& row : json.at("rows")) {
         EXPECT_GE(row.at("pinned_threads").get<int>(), row.at("threads").get<int>()) << row;
-        EXPECT_THAT(row.at("note").get<std::string>(), testing::HasSubstr("pinned"));
+        const std::string note = row.at("note");
+        EXPECT_THAT(note, testing::HasSubstr("pinned"));
+        const bool is_oversubscribed = row.at("threads") > json.at("machine").at("cores_allowed");
+        EXPECT_EQ(note.find("oversubscribed") != std::string::npos, is_oversubscribed) << row;
         EXPECT_TRUE(row.at("error_t1_percent").is_null());
         EXPECT_EQ(row.at("elements"), 12'800);
     }
