@@ -13,19 +13,14 @@ namespace {
 /// The plane of the face in a pool of its own, where the face's corners are 0, 1 and 2.
 constexpr int face_plane = 3;
 
-struct Piece {
-    int part;
-    Polygon polygon;
-};
-
 /// Takes what one element has in the face over to the pool of the face.
 class Side {
   public:
     Side(PlanePool& pool, const FaceSide& side) : pool_(pool), side_(side) {}
 
-    std::vector<Piece> pieces() {
+    std::vector<FacePiece> pieces() {
         if (side_.cells == nullptr) return {{0, whole_face()}};
-        std::vector<Piece> pieces;
+        std::vector<FacePiece> pieces;
         for (std::size_t c = 0; c < side_.cells->cells(); ++c) {
             const Cell& cell = side_.cells->cell(c);
             for (std::size_t f = 0; f < cell.faces.size(); ++f) {
@@ -92,6 +87,10 @@ bool is_whole(const FaceSide& side) {
 
 }  // namespace
 
+std::vector<FacePiece> face_pieces(PlanePool& pool, const FaceSide& side) {
+    return Side(pool, side).pieces();
+}
+
 std::vector<std::pair<int, int>> joined_parts(const FaceSide& a, const FaceSide& b,
                                               const std::function<bool(int, int)>& may_join) {
     if (is_whole(a) && is_whole(b)) {
@@ -103,10 +102,10 @@ std::vector<std::pair<int, int>> joined_parts(const FaceSide& a, const FaceSide&
     std::vector<Cover> covers;
     of_a.add_covers(covers);
     of_b.add_covers(covers);
-    const std::vector<Piece> pieces_a = of_a.pieces(), pieces_b = of_b.pieces();
+    const std::vector<FacePiece> pieces_a = of_a.pieces(), pieces_b = of_b.pieces();
     std::set<std::pair<int, int>> joined;
-    for (const Piece& piece_a : pieces_a) {
-        for (const Piece& piece_b : pieces_b) {
+    for (const FacePiece& piece_a : pieces_a) {
+        for (const FacePiece& piece_b : pieces_b) {
             const std::pair pair(piece_a.part, piece_b.part);
             if (joined.contains(pair) || !may_join(pair.first, pair.second)) continue;
             if (are_joined(pool, piece_a.polygon, piece_b.polygon, covers)) joined.insert(pair);

@@ -4,35 +4,36 @@
 #include <map>
 
 #include "lancet/mesh/cut/element_cells.hpp"
-#include "lancet/mesh/embed/inside_region.hpp"
+#include "lancet/mesh/embed/patch_builder.hpp"
 
 namespace lancet::mesh {
 
 namespace {
 
+std::array<Point, 4> corners_at_rest(const TetMesh& mesh, std::int32_t element) {
+    const Tetrahedron& nodes = mesh.tetrahedra()[static_cast<std::size_t>(element)];
+    std::array<Point, 4> corners{};
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.nodes()[static_cast<std::size_t>(nodes[k])];
+    return corners;
+}
+
 class Builder {
   public:
     Builder(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets)
-        : cut_(cut), facets_(facets), parts_(cut.parts_of_element(element)) {
-        if (const ElementCells* cells = cut.cells(element)) cells_ = *cells;
-        pool_ = cells_.pool();
-        const Tetrahedron& nodes = cut.mesh().tetrahedra()[static_cast<std::size_t>(element)];
-        for (std::size_t k = 0; k < 4; ++k) at_rest_[k] = cut.mesh().nodes()[static_cast<std::size_t>(nodes[k])];
-    }
+        : cut_(cut),
+          facets_(facets),
+          parts_(cut.parts_of_element(element)),
+          cells_(cut.cells(element) != nullptr ? *cut.cells(element) : ElementCells()),
+          builder_(cells_.pool(), corners_at_rest(cut.mesh(), element)),
+          pool_(builder_.pool()) {}
 
     void add_triangle(std::int32_t triangle) {
-        CutSurface surface = facets_.facet(triangle);
-        const Facet& facet = surface.facets().front();
-        if (!may_touch(facet, at_rest_)) return;
-        PooledTriangle pooled{.triangle = triangle, .edges = facets_.edges_of(triangle)};
-        pooled.plane = pool_.add_plane(facet.plane, at_rest_);
-        for (std::size_t k = 0; k < 3; ++k) pooled.borders[k] = pool_.add_plane(facet.borders[k].plane, at_rest_);
-        kept_.push_back(std::move(surface));
-        triangles_.push_back(pooled);
-        for (std::size_t c = 0; c < cells_.cells(); ++c) add_piece(pooled, c);
+        const PooledTriangle* pooled = builder_.add_triangle(facets_, triangle);
+        if (pooled == nullptr) return;
+        for (std::size_t c = 0; c < cells_.cells(); ++c) add_piece(*pooled, c);
     }
 
-    void add_sections(const std::function<bool(const Point&)>& is_inside) {
+    void add_sections(const Inside& is_inside) {
         struct Side {
             std::size_t cell, face;
         };
@@ -54,38 +55,17 @@ class Builder {
                         section = clip(pool_, section, edge);
                         if (section.points.empty()) break;
                     }
-                    if (!section.points.empty()) add_wall(section, part, other, is_inside);
+                    if (!section.points.empty()) builder_.add_wall(section, {part}, {other}, is_inside);
                 }
             }
         }
     }
 
-    void add_opened_faces(const std::function<bool(const Point&)>& is_inside) {
-        for (std::size_t c = 0; c < cells_.cells(); ++c) {
-            const Cell& cell = cells_.cell(c);
-            for (std::size_t f = 0; f < cell.faces.size(); ++f) {
-                const int plane = cell.faces[f].half.plane;
-                if (plane >= 4 || cut_.face_state(part_of(c), plane) != CutMesh::FaceState::opened) continue;
-                add_wall(polygon(cell, f), part_of(c), -1, is_inside);
-            }
-        }
-    }
-
-    ElementPatch take() { return std::move(patch_); }
+    ElementPatch take() { return std::move(builder_.patch()); }
 
   private:
     std::int32_t part_of(std::size_t cell) const { return parts_[static_cast<std::size_t>(cells_.part_of_cell(cell))]; }
     const Tetrahedron& copies(std::int32_t part) const { return cut_.parts()[static_cast<std::size_t>(part)]; }
-
-    /// The corner at a point of the pool, once for each part.
-    std::int32_t corner(std::int32_t part, int point, std::int32_t vertex, std::int32_t edge) {
-        const auto [place, is_new] = numbers_.try_emplace({part, point}, 0);
-        if (is_new) {
-            place->second = static_cast<std::int32_t>(patch_.corners.size());
-            patch_.corners.push_back({part, pool_.coordinates(point), vertex, edge});
-        }
-        return place->second;
-    }
 
     /// What a cell has of a triangle.
     void add_piece(const PooledTriangle& triangle, std::size_t c) {
@@ -112,67 +92,27 @@ class Builder {
             } else if (before < 3 || behind < 3) {
                 edge = triangle.edges[static_cast<std::size_t>(std::min(before, behind))];
             }
-            loop.push_back(corner(part_of(c), piece.points[k], vertex, edge));
+            loop.push_back(
+                builder_.corner(part_of(c), piece.points[k], pool_.coordinates(piece.points[k]), vertex, edge));
         }
-        patch_.polygons.push_back({part_of(c), triangle.triangle, {std::move(loop)}});
-    }
-
-    Point at_rest(int point) const {
-        Point place{};
-        const Barycentric& weights = pool_.coordinates(point);
-        for (std::size_t k = 0; k < 4; ++k) {
-            for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += weights[k] * at_rest_[k][axis];
-        }
-        return place;
-    }
-
-    /// The inside of a polygon as a wall of the part from which it is seen counter-clockwise from outside, and of the
-    /// other one, if there is one.
-    void add_wall(const Polygon& section, std::int32_t part, std::int32_t other,
-                  const std::function<bool(const Point&)>& is_inside) {
-        const auto is_border_inside = [&] {
-            // All corners are on one side; one that is close to the surface may be misjudged.
-            const auto inside = std::ranges::count_if(section.points, [&](int p) { return is_inside(at_rest(p)); });
-            return 2 * static_cast<std::size_t>(inside) > section.points.size();
-        };
-        const auto loops = inside_region(pool_, section, triangles_, is_border_inside);
-        if (!loops || loops->empty()) return;
-        const auto add = [&](std::int32_t of, bool is_reversed) {
-            ElementPatch::Polygon& wall = patch_.polygons.emplace_back();
-            wall.part = of;
-            for (const Loop& loop : *loops) {
-                std::vector<std::int32_t>& numbers = wall.loops.emplace_back();
-                for (const RegionCorner& at : loop) numbers.push_back(corner(of, at.point, -1, at.edge));
-                if (is_reversed) std::ranges::reverse(numbers);
-            }
-        };
-        add(part, false);
-        if (other >= 0) add(other, true);
+        builder_.patch().polygons.push_back({part_of(c), triangle.triangle, {std::move(loop)}});
     }
 
     const CutMesh& cut_;
     const SurfaceFacets& facets_;
     std::vector<std::int32_t> parts_;
     ElementCells cells_;
-    PlanePool pool_;
-    std::array<Point, 4> at_rest_{};
-    std::vector<CutSurface> kept_;  ///< which the pool refers to
-    std::vector<PooledTriangle> triangles_;
-    std::map<std::pair<std::int32_t, int>, std::int32_t> numbers_;
-    ElementPatch patch_;
+    PatchBuilder builder_;
+    PlanePool& pool_;
 };
 
 }  // namespace
 
 ElementPatch element_patch(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets,
-                           std::span<const std::int32_t> triangles,
-                           const std::function<bool(const Point&)>& is_inside) {
+                           std::span<const std::int32_t> triangles, const Inside& is_inside) {
     Builder builder(cut, element, facets);
     for (const std::int32_t triangle : triangles) builder.add_triangle(triangle);
-    if (is_inside) {
-        builder.add_sections(is_inside);
-        builder.add_opened_faces(is_inside);
-    }
+    if (is_inside) builder.add_sections(is_inside);
     return builder.take();
 }
 

@@ -10,7 +10,7 @@
 
 namespace lancet::mesh {
 
-/// What an element and its parts have of a closed surface and of the walls inside of it.
+/// What an element and its parts have of a surface, and of the walls inside of it; or the walls along a face.
 struct ElementPatch {
     /// A corner of polygons, with the part that carries it.
     struct Corner {
@@ -29,11 +29,19 @@ struct ElementPatch {
     std::vector<Polygon> polygons;
 };
 
+/// Whether a place is inside of the closed surface.
+using Inside = std::function<bool(const Point&)>;
+
 /// The pieces of triangles in the cells of an element and, with `is_inside`, the walls: what lies inside of the surface
-/// of the sections between parts with different copies, and of faces that a cut has opened. The triangles must be all
-/// that come near the element for walls. Everything is decided exactly (see SurfaceFacets).
+/// of the sections between parts with different copies. The triangles must be all that come near the element for
+/// walls. Everything is decided exactly (see SurfaceFacets).
 ElementPatch element_patch(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets,
-                           std::span<const std::int32_t> triangles,
-                           const std::function<bool(const Point&)>& is_inside = {});
+                           std::span<const std::int32_t> triangles, const Inside& is_inside = {});
+
+/// The walls along the face between two elements, the first of which a cut has touched: what lies inside of the surface
+/// where parts on both sides of the face have different copies at its corners. The triangles must be all that come near
+/// the face.
+ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t neighbour, const SurfaceFacets& facets,
+                        std::span<const std::int32_t> triangles, const Inside& is_inside);
 
 }  // namespace lancet::mesh

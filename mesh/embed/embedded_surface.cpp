@@ -88,31 +88,25 @@ bool EmbeddedSurface::update(const CutMesh& cut) {
         throw Error("embedded surface: the mesh has " + std::to_string(cut.mesh().tetrahedra().size()) +
                     " elements; expected the " + std::to_string(elements_) + " to which the surface is bound");
     }
-    std::set<std::int32_t> touched;
+    std::set<std::int32_t> renewed;
     for (const std::int32_t element : cut.touched_elements()) {
-        // Every cut that touches an element adds planes.
-        int& planes = planes_[element];
-        if (planes == cut.cells(element)->pool().planes()) continue;
-        planes = cut.cells(element)->pool().planes();
-        touched.insert(element);
+        std::vector<std::int32_t> state = state_of(cut, element);
+        std::vector<std::int32_t>& known = states_[element];
+        if (state == known) continue;
+        known = std::move(state);
+        renewed.insert(element);
     }
-    if (touched.empty()) return false;
-    std::set<std::int32_t> renewed = touched;
-    for (const std::int32_t element : touched) {
+    if (renewed.empty()) return false;
+    for (const std::int32_t element : renewed) {
+        renew(cut, element, true);
         for (const std::int32_t beside : neighbours_[static_cast<std::size_t>(element)]) {
-            if (beside < 0) continue;
-            bool is_cut = cut.cells(beside) != nullptr;
-            for (int corner = 0; corner < 4; ++corner) {
-                is_cut = is_cut || cut.face_state(beside, corner) == CutMesh::FaceState::opened;
-            }
-            if (is_cut) renewed.insert(beside);
+            if (beside >= 0 && inside_) renew_face(cut, element, beside);
         }
     }
-    for (const std::int32_t element : renewed) renew(cut, element, true);
 
     std::set<std::int32_t> divided;  // for the first time
     for (const std::int32_t element : renewed) {
-        for (const ElementPatch::Polygon& polygon : patches_.at(element).shape.polygons) {
+        for (const ElementPatch::Polygon& polygon : patches_.at({element, element}).shape.polygons) {
             if (polygon.triangle >= 0 && is_divided_[static_cast<std::size_t>(polygon.triangle)] == 0) {
                 is_divided_[static_cast<std::size_t>(polygon.triangle)] = 1;
                 divided.insert(polygon.triangle);
@@ -122,7 +116,7 @@ bool EmbeddedSurface::update(const CutMesh& cut) {
     std::set<std::int32_t> beside;
     for (const std::int32_t triangle : divided) {
         element_grid_.for_each_overlap(triangle_boxes_[static_cast<std::size_t>(triangle)], [&](std::int32_t element) {
-            const auto found = patches_.find(element);
+            const auto found = patches_.find({element, element});
             if (found == patches_.end() || !found->second.has_all) beside.insert(element);
         });
     }
@@ -145,13 +139,24 @@ void EmbeddedSurface::renew(const CutMesh& cut, std::int32_t element, bool has_a
     if (!has_all) {
         std::erase_if(triangles, [&](std::int32_t t) { return is_divided_[static_cast<std::size_t>(t)] == 0; });
     }
-    Patch patch{.has_all = has_all};
-    std::function<bool(const Point&)> is_inside;
+    Inside is_inside;
     if (has_all && inside_) is_inside = [&](const Point& place) { return inside_->contains(place); };
-    patch.shape = element_patch(cut, element, facets_, triangles, is_inside);
+    replace({element, element}, element_patch(cut, element, facets_, triangles, is_inside), has_all);
+}
+
+void EmbeddedSurface::renew_face(const CutMesh& cut, std::int32_t element, std::int32_t beside) {
+    const std::pair key(std::min(element, beside), std::max(element, beside));
+    replace(key,
+            face_patch(cut, element, beside, facets_, triangles_near(element),
+                       [&](const Point& place) { return inside_->contains(place); }),
+            true);
+}
+
+/// Corners that were there before keep their vertices.
+void EmbeddedSurface::replace(std::pair<std::int32_t, std::int32_t> elements, ElementPatch shape, bool has_all) {
+    Patch patch{.shape = std::move(shape), .has_all = has_all};
     patch.numbers.assign(patch.shape.corners.size(), -1);
-    // Corners that were there before keep their vertices.
-    const Patch& old = patches_[element];
+    Patch& old = patches_[elements];
     std::map<std::int32_t, std::vector<std::size_t>> old_of_part;
     for (std::size_t c = 0; c < old.shape.corners.size(); ++c) old_of_part[old.shape.corners[c].part].push_back(c);
     for (std::size_t c = 0; c < patch.shape.corners.size(); ++c) {
@@ -164,19 +169,35 @@ void EmbeddedSurface::renew(const CutMesh& cut, std::int32_t element, bool has_a
             if (largest < same_weight) patch.numbers[c] = old.numbers[o];
         }
     }
-    patches_[element] = std::move(patch);
+    old = std::move(patch);
+}
+
+/// What patches of an element depend on: every cut that touches it adds planes, and one nearby may separate copies.
+std::vector<std::int32_t> EmbeddedSurface::state_of(const CutMesh& cut, std::int32_t element) const {
+    std::vector<std::int32_t> state{cut.cells(element)->pool().planes()};
+    const auto add = [&](std::int32_t of) {
+        for (const std::int32_t part : cut.parts_of_element(of)) {
+            const Tetrahedron& copies = cut.parts()[static_cast<std::size_t>(part)];
+            state.insert(state.end(), copies.begin(), copies.end());
+        }
+    };
+    add(element);
+    for (const std::int32_t beside : neighbours_[static_cast<std::size_t>(element)]) {
+        if (beside >= 0) add(beside);
+    }
+    return state;
 }
 
 /// Triangles whose pieces do not cover them reach out of the mesh.
 void EmbeddedSurface::find_leaving(const CutMesh& cut, const std::set<std::int32_t>& triangles) {
     std::map<std::int32_t, double> covered;
-    for (const auto& [element, patch] : patches_) {
+    for (const auto& [elements, patch] : patches_) {
         for (const ElementPatch::Polygon& polygon : patch.shape.polygons) {
             if (!triangles.contains(polygon.triangle)) continue;
             std::vector<Point> places;
             for (const std::int32_t corner : polygon.loops.front()) {
                 const ElementPatch::Corner& at = patch.shape.corners[static_cast<std::size_t>(corner)];
-                places.push_back(place_in(corners_of(cut.mesh(), element), at.weights));
+                places.push_back(place_in(corners_of(cut.mesh(), elements.first), at.weights));
             }
             for (std::size_t k = 2; k < places.size(); ++k) {
                 covered[polygon.triangle] += area(places[0], places[k - 1], places[k]);
@@ -212,7 +233,7 @@ void EmbeddedSurface::number_corners(const CutMesh& cut) {
     CornerNumbers numbers(cut);
     std::set<std::int32_t> given;
     const auto for_each_corner = [&](const auto& use) {
-        for (auto& [element, patch] : patches_) {
+        for (auto& [elements, patch] : patches_) {
             for (std::size_t c = 0; c < patch.numbers.size(); ++c) use(patch.shape.corners[c], patch.numbers[c]);
         }
     };
@@ -243,7 +264,7 @@ void EmbeddedSurface::number_corners(const CutMesh& cut) {
 
 std::vector<PartRegion> EmbeddedSurface::regions() const {
     std::vector<PartRegion> regions;
-    for (const auto& [element, patch] : patches_) {
+    for (const auto& [elements, patch] : patches_) {
         for (const ElementPatch::Polygon& polygon : patch.shape.polygons) {
             if (polygon.triangle >= 0 && leaves_[static_cast<std::size_t>(polygon.triangle)] != 0) continue;
             PartRegion& region = regions.emplace_back(PartRegion{polygon.part, polygon.triangle});
@@ -267,7 +288,7 @@ void EmbeddedSurface::add_undivided(std::vector<PartRegion>& all) {
         return is_divided_[t] == 0 || leaves_[t] != 0;
     };
     std::map<std::int32_t, std::set<std::int32_t>> corners_on;  // edge -> vertices, where one side is whole
-    for (const auto& [element, patch] : patches_) {
+    for (const auto& [elements, patch] : patches_) {
         for (std::size_t c = 0; c < patch.numbers.size(); ++c) {
             const std::int32_t edge = patch.shape.corners[c].edge;
             if (edge < 0) continue;

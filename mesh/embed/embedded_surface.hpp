@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
@@ -36,8 +37,8 @@ namespace lancet::mesh {
 /// one, and pieces that thin have no inside.
 ///
 /// Vertices keep their numbers, also where no triangle uses one any more; numbers of triangles change with the
-/// topology. Clipping is done anew in the elements that a cut has touched and those beside; putting together what it
-/// makes takes time proportional to all that has been cut so far.
+/// topology. Clipping, which takes most of the time, is done anew only in elements that a cut has touched or near which
+/// it has separated copies; putting together what it makes takes time proportional to all that has been cut so far.
 ///
 /// Not followed: triangles that leave the mesh (they are not divided, and the wall has a gap there); copies that open
 /// in blended fronts (lanes.hpp: the surface there is that of sharp fronts, and opens when the front has passed); walls
@@ -72,6 +73,9 @@ class EmbeddedSurface {
         bool has_all = false;                 ///< all triangles near it, and walls
     };
     void renew(const CutMesh& cut, std::int32_t element, bool has_all);
+    void renew_face(const CutMesh& cut, std::int32_t element, std::int32_t beside);
+    void replace(std::pair<std::int32_t, std::int32_t> elements, ElementPatch shape, bool has_all);
+    std::vector<std::int32_t> state_of(const CutMesh& cut, std::int32_t element) const;
     std::vector<std::int32_t> triangles_near(std::int32_t element) const;
     void assemble(const CutMesh& cut);
     void number_corners(const CutMesh& cut);
@@ -87,8 +91,9 @@ class EmbeddedSurface {
     std::vector<std::array<std::int32_t, 4>> neighbours_;
     std::size_t elements_ = 0;
 
-    std::map<std::int32_t, int> planes_;  ///< of touched elements: how many, which tells whether a cut was there
-    std::map<std::int32_t, Patch> patches_;
+    std::map<std::int32_t, std::vector<std::int32_t>> states_;  ///< of touched elements, when their patches were made
+    /// Of elements, twice the same number, and of faces, those on both sides.
+    std::map<std::pair<std::int32_t, std::int32_t>, Patch> patches_;
     std::vector<std::uint8_t> is_divided_, leaves_;  ///< [triangle of the surface]
     std::uint64_t version_ = 0;
     std::vector<Triangle> triangles_;

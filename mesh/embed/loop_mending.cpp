@@ -43,10 +43,12 @@ namespace {
 
 class Mender {
   public:
-    Mender(const CutMesh& cut, std::span<const MaterialPoint> points, std::span<const Point> at_rest)
-        : cut_(cut), points_(points), at_rest_(at_rest) {}
+    /// Corners lie on a side where they are no farther than `distance` times the size of an element.
+    Mender(const CutMesh& cut, std::span<const MaterialPoint> points, std::span<const Point> at_rest, double distance)
+        : cut_(cut), points_(points), at_rest_(at_rest), distance_(distance) {}
 
-    void look(const std::vector<PartRegion>& regions) {
+    /// Finds unmatched sides. Returns false where there are none.
+    bool look(const std::vector<PartRegion>& regions) {
         for_each_side(regions,
                       [&](const PartRegion&, std::int32_t a, std::int32_t b) { excess_[key(a, b)] += a < b ? 1 : -1; });
         std::set<std::int32_t> ends;
@@ -59,6 +61,7 @@ class Mender {
             const auto heaviest = std::ranges::max_element(point.weights) - point.weights.begin();
             ends_at_[copies(point.part)[static_cast<std::size_t>(heaviest)]].push_back(vertex);
         }
+        return !ends.empty();
     }
 
     void mend(PartRegion& region) const {
@@ -108,8 +111,7 @@ class Mender {
         const Point &from = at_rest_[static_cast<std::size_t>(a)], &to = at_rest_[static_cast<std::size_t>(b)];
         const Point side{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
         const double square = side[0] * side[0] + side[1] * side[1] + side[2] * side[2];
-        // Ends and corners may each have been moved by same_weight of an element's size.
-        const double tolerance = 4 * same_weight * size(part >= 0 ? part : points_[static_cast<std::size_t>(a)].part);
+        const double tolerance = distance_ * size(part >= 0 ? part : points_[static_cast<std::size_t>(a)].part);
         std::vector<std::pair<double, std::int32_t>> found;
         const auto look_at = [&](const std::vector<std::int32_t>& ends) {
             for (const std::int32_t vertex : ends) {
@@ -152,6 +154,7 @@ class Mender {
     const CutMesh& cut_;
     std::span<const MaterialPoint> points_;
     std::span<const Point> at_rest_;
+    double distance_;
     std::unordered_map<std::uint64_t, int> excess_;              ///< of sides in one direction over those in the other
     std::map<std::int32_t, std::vector<std::int32_t>> ends_at_;  ///< of unmatched sides, by their heaviest copy
 };
@@ -160,9 +163,13 @@ class Mender {
 
 void mend_loops(const CutMesh& cut, std::span<const MaterialPoint> points, std::span<const Point> at_rest,
                 std::vector<PartRegion>& regions) {
-    Mender mender(cut, points, at_rest);
-    mender.look(regions);
-    for (PartRegion& region : regions) mender.mend(region);
+    // Most corners lie on their sides to rounding. What is left has corners that have become one with others close by:
+    // three may have moved, each by same_weight.
+    for (const double distance : {0x1p-38, same_weight, 4 * same_weight}) {
+        Mender mender(cut, points, at_rest, distance);
+        if (!mender.look(regions)) return;
+        for (PartRegion& region : regions) mender.mend(region);
+    }
 }
 
 }  // namespace lancet::mesh
