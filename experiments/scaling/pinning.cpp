@@ -50,7 +50,7 @@ int count_pinned_threads() {
 }  // namespace
 
 int pin_threads(runtime::Scheduler& scheduler) {
-    constexpr double patience_seconds = 10;
+    constexpr double patience_seconds = 60;  // a thread that is not there at all never comes; a busy machine delays one
     const std::vector<int> cores = allowed_cores();
     const int threads = scheduler.threads();
     const double start = runtime::steady_seconds();

@@ -105,6 +105,10 @@ ExitCode body(int argc, const char* const* argv) {
     const std::optional<ScalingSettings> settings = parse_settings(argc, argv);
     if (!settings) return ExitCode::success;
     const std::array<double, 3> load_before = runtime::load_averages();
+    if (load_before[0] > 0.5) {
+        std::cerr << "note: the load average is " << format_number(load_before[0], 3)
+                  << "; rows that others disturb are marked, and take longer\n";
+    }
     const Plan plan = make_plan(*settings);
     Progress progress;
     const Measurement measurement = measure(plan, *settings, this_program().parent_path(), progress);
