@@ -35,6 +35,34 @@ Point direction(const Point& a, const Point& b) {
     return {d[0] / length, d[1] / length, d[2] / length};
 }
 
+Point cross(const Point& u, const Point& v) {
+    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+double dot(const Point& u, const Point& v) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+/// Adds the unit normal of the triangle, weighted by its angle at p: n / |n| atan2(|n|, u . v) with the edges u and v
+/// from p and n = u x v, of any length.
+void add_weighted(const Point& p, const Point& q, const Point& r, Point& sum) {
+    Point u{q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v{r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+    Point normal = cross(u, v);
+    double square = dot(normal, normal);
+    // Where a square is not a normal number, edges of unit length; |n|^2 is of the fourth order in them.
+    constexpr double smallest = 1e-250, largest = 1e250;
+    if (!(square > smallest && square < largest)) {
+        u = direction(p, q);
+        v = direction(p, r);
+        normal = cross(u, v);
+        square = dot(normal, normal);
+        if (!(square > 0)) return;
+    }
+    const double sine = std::sqrt(square);
+    const double weight = std::atan2(sine, dot(u, v)) / sine;
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += weight * normal[axis];
+}
+
 }  // namespace
 
 void vertex_normals(const VertexCorners& corners, std::span<const Point> positions, std::size_t begin, std::size_t end,
@@ -47,13 +75,7 @@ void vertex_normals(const VertexCorners& corners, std::span<const Point> positio
                 return positions[static_cast<std::size_t>(t[static_cast<std::size_t>((corner + k) % 3)])];
             };
             // (corner + k) % 3 runs through the triangle from this corner on, since corner = 3 t + k.
-            const Point u = direction(at(0), at(1)), v = direction(at(0), at(2));
-            const Point normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-            const double sine = std::hypot(normal[0], normal[1], normal[2]);
-            const double cosine = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-            if (!(sine > 0)) continue;
-            const double weight = std::atan2(sine, cosine) / sine;
-            for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += weight * normal[axis];
+            add_weighted(at(0), at(1), at(2), sum);
         }
         const double length = std::hypot(sum[0], sum[1], sum[2]);
         normals[vertex] = length > 0 ? Point{sum[0] / length, sum[1] / length, sum[2] / length} : Point{};
