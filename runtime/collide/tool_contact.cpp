@@ -60,12 +60,16 @@ Touch touch_of(const Segment& segment, double radius, const Face& face) {
     return touch;
 }
 
-Touch deepest_touch(std::span<const Segment> axis, double radius, const Face& face) {
+/// The deepest of a tool's touches at one pose, of the segments that are near the triangle; takes them off `near`.
+template <class Near>
+Touch deepest_touch(std::span<const Near>& near, const ToolMotion& motion, const Face& face) {
     Touch deepest;
-    for (std::size_t i = 0; i < axis.size(); ++i) {
-        Touch touch = touch_of(axis[i], radius, face);
+    const std::int32_t pose = near.front().pose;
+    for (; !near.empty() && near.front().pose == pose; near = near.subspan(1)) {
+        const auto segment = static_cast<std::size_t>(near.front().segment);
+        Touch touch = touch_of(motion.axis(static_cast<std::size_t>(pose))[segment], motion.radius(), face);
         if (touch.side == Side::none || !(touch.contact.depth > deepest.contact.depth)) continue;
-        touch.segment = i;
+        touch.segment = segment;
         deepest = touch;
     }
     return deepest;
@@ -99,12 +103,16 @@ bool is_nearest_behind(const Point& on_axis, const ToolContact& contact, std::sp
     return true;
 }
 
-/// Where the tool crossed the face from the front on its way and is behind it at the end.
-Touch crossing(const ToolMotion& motion, const Face& face) {
+/// How the tool lies to the face at its end, or where it crossed the face from the front on its way and is behind it at
+/// the end. `near`: by pose.
+template <class Near>
+Touch end_or_crossing(std::span<const Near> near, const ToolMotion& motion, const Face& face) {
     Touch crossed;
     bool was_in_front = false;
-    for (std::size_t pose = 0; pose + 1 < motion.poses(); ++pose) {
-        const Touch touch = deepest_touch(motion.axis(pose), motion.radius(), face);
+    while (!near.empty()) {
+        const bool is_end = static_cast<std::size_t>(near.front().pose) + 1 == motion.poses();
+        const Touch touch = deepest_touch(near, motion, face);
+        if (is_end && touch.side != Side::none) return touch;
         if (touch.side == Side::front) {
             was_in_front = true;
             crossed = {};
@@ -125,22 +133,32 @@ Touch crossing(const ToolMotion& motion, const Face& face) {
 void ToolContactFinder::find(const BroadPhase& surface, std::span<const Point> positions,
                              std::span<const mesh::Triangle> triangles, const ToolMotion& motion,
                              std::vector<ToolContact>& contacts) {
-    candidates_.clear();
+    near_.clear();
     for (std::size_t pose = 0; pose < motion.poses(); ++pose) {
-        for (const Segment& segment : motion.axis(pose)) {
-            surface.query(box_around(std::array{segment.start, segment.end}, motion.radius()), found_);
-            candidates_.insert(candidates_.end(), found_.begin(), found_.end());
+        const std::span<const Segment> axis = motion.axis(pose);
+        for (std::size_t segment = 0; segment < axis.size(); ++segment) {
+            const std::array ends{axis[segment].start, axis[segment].end};
+            surface.query(box_around(ends, motion.radius()), found_);
+            for (const std::int32_t triangle : found_) {
+                near_.push_back({triangle, static_cast<std::int32_t>(pose), static_cast<std::int32_t>(segment)});
+            }
         }
     }
-    std::ranges::sort(candidates_);
-    candidates_.erase(std::ranges::unique(candidates_).begin(), candidates_.end());
+    std::ranges::sort(near_);
+    candidates_.clear();
+    for (const Near& near : near_) {
+        if (candidates_.empty() || candidates_.back() != near.triangle) candidates_.push_back(near.triangle);
+    }
 
     contacts.clear();
+    std::span<const Near> rest(near_);
     for (const std::int32_t number : candidates_) {
+        const auto last = std::ranges::find_if(rest, [&](const Near& near) { return near.triangle != number; });
+        const std::span<const Near> near(rest.begin(), last);
+        rest = {last, rest.end()};
         const Face face = face_of(positions, triangles[static_cast<std::size_t>(number)]);
         if (face.normal == Point{}) continue;
-        Touch touch = deepest_touch(motion.end(), motion.radius(), face);
-        if (touch.side == Side::none && motion.poses() > 1) touch = crossing(motion, face);
+        Touch touch = end_or_crossing(near, motion, face);
         if (touch.side == Side::none) continue;
         touch.contact.triangle = number;
         touch.contact.place = weighted(face.corners, touch.contact.weights);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -44,10 +45,19 @@ class ToolContactFinder {
     void find(const BroadPhase& surface, std::span<const Point> positions, std::span<const mesh::Triangle> triangles,
               const ToolMotion& motion, std::vector<ToolContact>& contacts);
 
-    /// The triangles whose boxes touched a segment of the tool in the last call.
+    /// The triangles whose boxes touched that of a segment of the tool in the last call.
     std::size_t candidates() const noexcept { return candidates_.size(); }
 
   private:
+    /// A segment of the axis at a pose whose box touches that of a triangle.
+    struct Near {
+        std::int32_t triangle;
+        std::int32_t pose;
+        std::int32_t segment;
+
+        friend auto operator<=>(const Near&, const Near&) = default;
+    };
+    std::vector<Near> near_;
     std::vector<std::int32_t> found_, candidates_;
 };
 

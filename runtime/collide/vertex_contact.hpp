@@ -30,10 +30,11 @@ struct VertexContact {
 /// So depth and normal are those of the surface that was entered, also deep inside, and change little between
 /// neighbours and steps.
 ///
-/// Not found: edges that pass through edges or faces with no vertex inside (bodies should be meshed alike where they
-/// touch). Found, but without a depth: vertices of a group that no edge leads out of, such as those of a body that is
-/// wholly inside of the other; and where the tetrahedron of step 1 is inverted or its body overlaps itself, edges may
-/// find no surface. They are counted.
+/// Not found: vertices exactly on the inner faces of their own body's tetrahedra, as in a body that is folded
+/// symmetrically to the last bit; edges that pass through edges or faces with no vertex inside (bodies should be meshed
+/// alike where they touch). Found, but without a depth: vertices of a group that no edge leads out of, such as those of
+/// a body that is wholly inside of the other; and where the tetrahedron of step 1 is inverted or its body overlaps
+/// itself, edges may find no surface. They are counted.
 class VertexContactFinder {
   public:
     /// The vertices of `first` in `second`, by vertex; they replace what was in `contacts`. Both may be one object:
