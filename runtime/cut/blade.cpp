@@ -7,6 +7,8 @@
 #include <string>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/runtime/collide/box.hpp"
+#include "lancet/runtime/collide/vector3.hpp"
 
 namespace lancet::runtime {
 
@@ -20,16 +22,23 @@ Corners corners_of(const mesh::Tetrahedron& nodes, std::span<const Point> positi
     return corners;
 }
 
-/// Square of the distance from the box around the corners.
-double distance_from_box(const Corners& corners, const Point& place) {
+/// Square of the distance from a box.
+double distance_from(const Box& box, const Point& place) {
     double square = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
-        const double outside = std::max({low - place[axis], place[axis] - high, 0.0});
+        const double outside = std::max({box.lower[axis] - place[axis], place[axis] - box.upper[axis], 0.0});
         square += outside * outside;
     }
     return square;
 }
+
+/// The part that is nearest to a place, as far as parts have been looked at.
+struct Nearest {
+    std::int32_t part = -1;
+    mesh::Barycentric weights{};
+    double box_distance = std::numeric_limits<double>::infinity();
+    double depth = -std::numeric_limits<double>::infinity();
+};
 
 void require_finite(const Point& place) {
     for (const double value : place) {
@@ -39,40 +48,45 @@ void require_finite(const Point& place) {
 
 }  // namespace
 
-Point rest_place(const CuttableBody& body, std::span<const Point> positions, const Point& place) {
+std::vector<Point> rest_places(const CuttableBody& body, std::span<const Point> positions,
+                               std::span<const Point> places) {
     const mesh::CutMesh& mesh = body.mesh();
-    std::int32_t nearest = -1;
-    mesh::Barycentric at{};
-    double box_distance = std::numeric_limits<double>::infinity(), depth = -box_distance;
+    std::vector<Nearest> nearest(places.size());
     for (std::size_t part = 0; part < mesh.parts().size(); ++part) {
         const Corners corners = corners_of(mesh.parts()[part], positions);
-        const double distance = distance_from_box(corners, place);
-        if (distance > box_distance) continue;
-        const mesh::Barycentric weights = mesh::barycentric(corners, place);
-        if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) continue;
-        const double lowest = *std::ranges::min_element(weights);
-        if (distance == box_distance && lowest <= depth) continue;
-        // What another part of the element holds is not this part's.
-        const std::int32_t element = mesh.element_of_part()[part];
-        if (lowest >= 0 && mesh.material_point(element, weights).part != static_cast<std::int32_t>(part)) continue;
-        nearest = static_cast<std::int32_t>(part);
-        at = weights;
-        box_distance = distance;
-        depth = lowest;
+        const Box box = box_around(corners);
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const double distance = distance_from(box, places[k]);
+            if (distance > nearest[k].box_distance) continue;
+            const mesh::Barycentric weights = mesh::barycentric(corners, places[k]);
+            if (!std::ranges::all_of(weights, [](double weight) { return std::isfinite(weight); })) continue;
+            const double lowest = *std::ranges::min_element(weights);
+            if (distance == nearest[k].box_distance && lowest <= nearest[k].depth) continue;
+            // What another part of the element holds is not this part's.
+            const std::int32_t element = mesh.element_of_part()[part];
+            if (lowest >= 0 && mesh.material_point(element, weights).part != static_cast<std::int32_t>(part)) continue;
+            nearest[k] = {static_cast<std::int32_t>(part), weights, distance, lowest};
+        }
     }
-    if (nearest < 0) return place;
-    const mesh::Tetrahedron& nodes =
-        mesh.mesh().tetrahedra()[static_cast<std::size_t>(mesh.element_of_part()[static_cast<std::size_t>(nearest)])];
-    Point rest{};
-    for (std::size_t k = 0; k < 4; ++k) {
-        const Point& node = mesh.mesh().nodes()[static_cast<std::size_t>(nodes[k])];
-        for (std::size_t axis = 0; axis < 3; ++axis) rest[axis] += at[k] * node[axis];
+    std::vector<Point> rest(places.begin(), places.end());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (nearest[k].part < 0) continue;
+        const auto element = mesh.element_of_part()[static_cast<std::size_t>(nearest[k].part)];
+        const mesh::Tetrahedron& nodes = mesh.mesh().tetrahedra()[static_cast<std::size_t>(element)];
+        rest[k] = {};
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Point& node = mesh.mesh().nodes()[static_cast<std::size_t>(nodes[corner])];
+            for (std::size_t axis = 0; axis < 3; ++axis) rest[k][axis] += nearest[k].weights[corner] * node[axis];
+        }
     }
     return rest;
 }
 
-Blade::Blade(int segments) : segments_(segments) {
+Blade::Blade(int segments, double shortest_stroke) : segments_(segments), shortest_stroke_(shortest_stroke) {
     if (segments < 1) throw Error("blade: " + std::to_string(segments) + " segments; expected at least 1");
+    if (!(shortest_stroke >= 0) || !std::isfinite(shortest_stroke)) {
+        throw Error("blade: a shortest stroke of " + std::to_string(shortest_stroke) + " m; expected at least 0");
+    }
 }
 
 void Blade::place(const CuttableBody& body, const Point& heel, const Point& tip) {
@@ -82,17 +96,24 @@ void Blade::place(const CuttableBody& body, const Point& heel, const Point& tip)
     body.body().positions(positions);
     for (int k = 0; k <= segments_; ++k) {
         const double t = static_cast<double>(k) / segments_;
-        Point along{};
+        Point& along = edge.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis) along[axis] = (1 - t) * heel[axis] + t * tip[axis];
-        edge.push_back(rest_place(body, positions, along));
     }
-    edge_ = std::move(edge);
+    edge_ = rest_places(body, positions, edge);
 }
 
 std::optional<mesh::CutSurface> Blade::sweep(const CuttableBody& body, const Point& heel, const Point& tip) {
     const std::vector<Point> before = edge_;
     place(body, heel, tip);
     if (before.empty() || before == edge_) return std::nullopt;
+    double farthest = 0;
+    for (std::size_t k = 0; k < edge_.size(); ++k) {
+        farthest = std::max(farthest, length(subtract(edge_[k], before[k])));
+    }
+    if (farthest < shortest_stroke_) {
+        edge_ = before;
+        return std::nullopt;
+    }
     std::vector<Point> vertices = before;
     vertices.insert(vertices.end(), edge_.begin(), edge_.end());
     std::vector<mesh::Triangle> triangles;

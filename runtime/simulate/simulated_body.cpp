@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
@@ -35,6 +36,9 @@ SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const
     } else {
         body_ = make_body(definition_.scene, definition_.settings, scheduler);
     }
+    const mesh::TetMesh& mesh = definition_.scene.mesh;
+    // A regular tetrahedron of edge a has the volume a^3 / (6 sqrt 2).
+    element_size_ = std::cbrt(mesh.volume() / static_cast<double>(mesh.tetrahedra().size()) * 6 * std::numbers::sqrt2);
     scene_loads_ = external_loads(definition_.scene);
     find_mean_mass();
 }
@@ -48,7 +52,9 @@ void SimulatedBody::find_mean_mass() {
 }
 
 void SimulatedBody::run(StepStage stage, Scheduler& scheduler) {
-    if (!is_asleep_) body().run(stage, scheduler);
+    if (is_asleep_) return;
+    const StepReport report = body().run(stage, scheduler);
+    if (stage == StepStage::update && report.lost) ++lost_steps_;
 }
 
 CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip) {

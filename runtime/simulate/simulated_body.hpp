@@ -59,6 +59,11 @@ class SimulatedBody {
     /// One stage of one step; nothing while asleep.
     void run(StepStage stage, Scheduler& scheduler);
 
+    /// Steps in which no finite state was found: the body was stopped where it was.
+    std::int64_t lost_steps() const noexcept { return lost_steps_; }
+
+    /// The edge of the regular tetrahedron that has the mean volume of the elements, in metres.
+    double element_size() const noexcept { return element_size_; }
     /// Draws a tool's blade to where it is now.
     CutUpdate draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip);
     /// Whether cuts have changed the surface since it was made.
@@ -115,9 +120,11 @@ class SimulatedBody {
     BodyDefinition definition_;
     SleepOptions sleep_;
     int steps_per_world_step_ = 1;
+    double element_size_ = 0;
     std::unique_ptr<DeformableBody> body_;
     std::unique_ptr<CuttableBody> cuttable_;
     std::shared_ptr<const CarriedSurface> surface_;
+    std::int64_t lost_steps_ = 0;
     std::int64_t cuts_ = 0;           ///< that have changed something
     std::int64_t surface_cuts_ = -1;  ///< that the surface shows
     std::vector<Point> scene_loads_;  ///< [node of the body]

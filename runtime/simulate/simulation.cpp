@@ -118,6 +118,7 @@ void Simulation::step() {
     const double shown = options_.overlap ? time() : time() + options_.time_step;
     frame_is_due_ = has_surfaces() && frame_rate_.due(shown);
     collision_is_due_ = !tools_.empty() && collision_rate_.due(shown);
+    if (collision_is_due_) ++collisions_;
     if (options_.overlap) {
         for (const auto& tool : tools_) tool->contacts.swap(tool->found);
     }

@@ -98,9 +98,10 @@ class Simulation {
     /// Tells of each task that has run; nullptr: nobody. Must outlive the simulation's use of it.
     void observe_tasks(TaskObserver* observer);
 
-    /// Moves a tool, from any thread but one at a time for each tool. It is there at the end of the next step; several
-    /// samples of one step are all seen by blades, the last one by all else. False if the tool is so far ahead of the
-    /// simulation that there is no room: the sample is lost. Throws lancet::Error as require_valid does.
+    /// Moves a tool, from any thread but one at a time for each tool. It is there at the end of the next step. Of
+    /// several samples in one step the last counts; a blade starts and ends its cuts where the samples say. False if
+    /// the tool is so far ahead of the simulation that there is no room: the sample is lost. Throws lancet::Error as
+    /// require_valid does.
     bool move(int tool, const Pose& pose, ToolAction action);
     /// Moves a tool along a path from now on: at each step the samples since the last one. Replaces what move brings.
     void play(int tool, ToolPath path);
@@ -128,6 +129,8 @@ class Simulation {
     const StepGraph& graph();
     std::vector<TaskStatistics> task_statistics() const;
     FrameStatistics frame_statistics() const;
+    /// How often contacts have been looked for.
+    std::int64_t collisions() const noexcept { return collisions_; }
     CutStatistics cut_statistics() const noexcept { return cut_statistics_; }
 
   private:
@@ -150,6 +153,10 @@ class Simulation {
         std::vector<ToolSpring> contacts;
         std::vector<ToolSpring> found;  ///< contacts, by the collision task; taken up by the next step
         Snapshots<ForceModel> forces;
+
+        bool is_felt() const noexcept {
+            return is_placed && (now.action == ToolAction::touch || now.action == ToolAction::grab);
+        }
     };
     using Task = StepGraph::Task;
 
@@ -191,7 +198,7 @@ class Simulation {
     bool frame_is_due_ = false, collision_is_due_ = false;
     std::vector<Snapshots<MotionSnapshot>::Reader> before_;  ///< [body] the state that the step starts from
     std::vector<TouchableSurface> touchable_;                ///< [body]
-    std::int64_t frames_due_ = 0, frames_dropped_ = 0;
+    std::int64_t collisions_ = 0, frames_due_ = 0, frames_dropped_ = 0;
     CutStatistics cut_statistics_;
 };
 

@@ -39,13 +39,19 @@ void Simulation::take_input() {
 void Simulation::cut(SimulatedBody& body, std::size_t number) {
     for (const auto& tool : tools_) {
         if (!tool->definition.blade || !tool->is_placed) continue;
-        while (tool->blades.size() < bodies_.size()) tool->blades.emplace_back();
+        while (tool->blades.size() < bodies_.size()) {
+            tool->blades.emplace_back(8, bodies_[tool->blades.size()]->element_size() / 2);
+        }
         Blade& blade = tool->blades[number];
-        for (const ToolSample& sample : tool->samples) {
+        for (std::size_t k = 0; k < tool->samples.size(); ++k) {
+            const ToolSample& sample = tool->samples[k];
             if (sample.action != ToolAction::cut) {
                 blade.lift();
                 continue;
             }
+            // Of the places that a blade went through within a step, the last is enough.
+            const bool goes_on = k + 1 < tool->samples.size() && tool->samples[k + 1].action == ToolAction::cut;
+            if (goes_on && !blade.is_lifted()) continue;
             const auto& [heel, tip] = *tool->definition.blade;
             const double start = steady_seconds();
             const CutUpdate update = body.draw(blade, *scheduler_, place(sample.pose, heel), place(sample.pose, tip));
@@ -81,6 +87,7 @@ void Simulation::push_bodies() {
         } else if (tool->grabs.empty()) {
             take_hold(*tool);
         }
+        if (!tool->is_felt()) tool->contacts.clear();
         stiffen_contacts(*tool);
         for (const auto* springs : {&tool->grabs, &tool->contacts}) {
             for (const ToolSpring& spring : *springs) {

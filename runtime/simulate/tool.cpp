@@ -38,10 +38,10 @@ std::string_view to_string(ToolAction action) noexcept {
 }
 
 ToolAction tool_action_from_string(std::string_view text) {
-    for (const ToolAction action : {ToolAction::touch, ToolAction::grab, ToolAction::cut}) {
+    for (const ToolAction action : {ToolAction::touch, ToolAction::grab, ToolAction::cut, ToolAction::idle}) {
         if (text == to_string(action)) return action;
     }
-    throw Error("tool: unknown action '" + std::string(text) + "'; expected touch, grab or cut");
+    throw Error("tool: unknown action '" + std::string(text) + "'; expected touch, grab, cut or idle");
 }
 
 void require_valid(std::span<const ToolSample> path) {
@@ -96,7 +96,7 @@ ToolPath read_tool_path(const std::filesystem::path& file) {
         sample.time = words.number("a time in seconds");
         for (double& value : sample.pose.position) value = words.number("a position of three numbers");
         for (double& value : sample.pose.orientation) value = words.number("a quaternion of four numbers");
-        const std::string_view action = words.word("an action: touch, grab or cut");
+        const std::string_view action = words.word("an action: touch, grab, cut or idle");
         try {
             sample.action = tool_action_from_string(action);
             if (!words.at_end()) throw Error("the end of the line expected after the action");

@@ -13,9 +13,10 @@ namespace lancet::runtime {
 enum class ToolAction {
     touch,  ///< the tool pushes what it meets
     grab,   ///< it holds on to what it has met when this began
-    cut     ///< its blade cuts
+    cut,    ///< its blade cuts; nothing else of it is felt
+    idle    ///< it goes through everything, as when it is drawn out of a wound
 };
-/// "touch", "grab" or "cut".
+/// "touch", "grab", "cut" or "idle".
 std::string_view to_string(ToolAction action) noexcept;
 /// The inverse. Throws lancet::Error, which lists the choices, for another text.
 ToolAction tool_action_from_string(std::string_view text);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lancet/kernels/error.hpp"
 #include "lancet/runtime/collide/vector3.hpp"
 #include "lancet/runtime/simulate/simulation.hpp"
 
@@ -58,8 +59,17 @@ void Simulation::find_contacts() {
     if (!collision_is_due_) return;
     while (touchable_.size() < bodies_.size()) touchable_.emplace_back(options_.broad_phase);
     for (const auto& tool : tools_) {
-        if (tool->is_placed)
-            tool->motion.set(tool->definition.shape, tool->tested.value_or(tool->now.pose), tool->now.pose);
+        // A tool that has gone through everything is not on its way from anywhere.
+        if (!tool->is_felt()) {
+            tool->tested.reset();
+        } else {
+            const Pose& now = tool->now.pose;
+            try {
+                tool->motion.set(tool->definition.shape, tool->tested.value_or(now), now);
+            } catch (const Error&) {  // too far for a motion: it has been put elsewhere
+                tool->motion.set(tool->definition.shape, now);
+            }
+        }
     }
     for (std::size_t number = 0; number < bodies_.size(); ++number) {
         Snapshots<MotionSnapshot>::Reader reader;
@@ -68,7 +78,7 @@ void Simulation::find_contacts() {
         const CarriedSurface& surface = *snapshot->surface;
         touchable_[number].update(*scheduler_, surface, snapshot->positions);
         for (const auto& tool : tools_) {
-            if (!tool->is_placed) continue;
+            if (!tool->is_felt()) continue;
             std::vector<ToolSpring>& found = options_.overlap ? tool->found : tool->contacts;
             for (const ToolContact& contact : touchable_[number].contacts(surface, tool->motion)) {
                 // The tool's point is so far behind the surface as the contact is deep.
@@ -82,7 +92,7 @@ void Simulation::find_contacts() {
         }
     }
     for (const auto& tool : tools_) {
-        if (tool->is_placed) tool->tested = tool->now.pose;
+        if (tool->is_felt()) tool->tested = tool->now.pose;
     }
 }
 

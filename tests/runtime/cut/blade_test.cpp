@@ -49,10 +49,13 @@ TEST(Blade, RestPlacesAreFoundInsideAndOutside) {
     // Turned by 90 degrees about z and stretched by a tenth along x: x' = -y, y' = 1.1 x.
     std::vector<Point> positions;
     for (const Point& x : body.mesh().mesh().nodes()) positions.push_back({-x[1], 1.1 * x[0], x[2]});
-    for (const Point& rest :
-         {Point{0.33, 0.07, 0.11}, Point{0.99, 0.199, 0.001}, Point{1.5, 0.1, 0.1}, Point{0.4, 0.5, 0.1}}) {
-        const Point found = rest_place(body, positions, {-rest[1], 1.1 * rest[0], rest[2]});
-        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found[axis], rest[axis], 1e-12);
+    const std::vector<Point> rest{{0.33, 0.07, 0.11}, {0.99, 0.199, 0.001}, {1.5, 0.1, 0.1}, {0.4, 0.5, 0.1}};
+    std::vector<Point> places;
+    for (const Point& x : rest) places.push_back({-x[1], 1.1 * x[0], x[2]});
+    const std::vector<Point> found = rest_places(body, positions, places);
+    ASSERT_EQ(found.size(), rest.size());
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found[k][axis], rest[k][axis], 1e-12);
     }
 }
 
@@ -87,6 +90,21 @@ TEST(Blade, StrokesThroughAMovingBodyLeaveNoGap) {
         EXPECT_TRUE(is_apart);
         EXPECT_NEAR(volumes_of_pieces(body)[0], 0.02, 0.002);
     }
+}
+
+TEST(Blade, SmallMovesAreGatheredIntoStrokes) {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    CuttableBody body(bar(), {}, *scheduler);
+    Blade blade(4, 0.1);
+    int strokes = 0;
+    for (int k = 0; k <= 1200; ++k) {
+        const double y = 0.35 - 0.0005 * k;
+        strokes += blade.draw(body, *scheduler, {0.43, y, -0.1}, {0.44, y, 0.3}).mesh.touched_elements > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(pieces(body), 2);
+    EXPECT_LE(strokes, 4) << "0.2 m of material in strokes of 0.1 m";
+    EXPECT_THROW(Blade(4, -1), Error);
+    EXPECT_THROW(Blade(4, NAN), Error);
 }
 
 TEST(Blade, BadNumbersAreRefusedAndLoseNothing) {

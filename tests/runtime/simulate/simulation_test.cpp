@@ -433,6 +433,29 @@ TEST(Simulation, ToolsAreMovedAndSurfacesAskedForFromOtherThreads) {
     eye.join();
 }
 
+TEST(Simulation, AToolThatIsPutElsewhereStartsThere) {
+    const auto scheduler = make_scheduler(SchedulerKind::serial, 1);
+    Simulation simulation(*scheduler, {.time_step = time_step});
+    simulation.add_body(bar("bar"));
+    const int tool = simulation.add_tool({.name = "probe", .shape = SphereTool{.radius = 0.001}});
+    simulation.play(tool, {{.time = 0.02, .pose = {.position = {0, 1e6, 0}}}, {.time = 0.06, .pose = {}}});
+    for (int step = 0; step < 5; ++step) EXPECT_NO_THROW(simulation.step());
+}
+
+TEST(Simulation, AnIdleToolGoesThroughEverything) {
+    const auto scheduler = make_scheduler(SchedulerKind::serial, 1);
+    Simulation simulation(*scheduler, {.time_step = time_step, .gravity = {0, 0, 0}});
+    simulation.add_body(bar("bar"));
+    const int tool = simulation.add_tool({.name = "probe", .shape = SphereTool{.radius = 0.1}});
+    const auto before = positions(simulation.body(0));
+    simulation.play(tool, {{.time = 0.02, .pose = {.position = {0.7, 0.1, 0.1}}, .action = ToolAction::idle}});
+    for (int step = 0; step < 5; ++step) simulation.step();
+    EXPECT_EQ(positions(simulation.body(0)), before);
+    simulation.play(tool, {{.time = 0.12, .pose = {.position = {0.7, 0.15, 0.1}}}});
+    for (int step = 0; step < 5; ++step) simulation.step();
+    EXPECT_NE(positions(simulation.body(0)), before);
+}
+
 TEST(Simulation, TellsObserversOfItsTasks) {
     struct Counter final : TaskObserver {
         void ended(int, std::string_view name, double begin, double end) noexcept override {

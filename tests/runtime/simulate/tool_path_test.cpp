@@ -42,7 +42,7 @@ TEST(ToolPath, ErrorsNameFileLineAndWhatWasExpected) {
     using testing::HasSubstr;
     EXPECT_THAT(error_of("# t\n0 0 0 0 1 0 0 0 touch\n0 0 0 zero 1 0 0 0 cut\n"),
                 AllOf(HasSubstr("lancet_tool_path.txt"), HasSubstr("line 3"), HasSubstr("position")));
-    EXPECT_THAT(error_of("0 0 0 0 1 0 0 0 stab\n"), AllOf(HasSubstr("line 1"), HasSubstr("touch, grab or cut")));
+    EXPECT_THAT(error_of("0 0 0 0 1 0 0 0 stab\n"), AllOf(HasSubstr("line 1"), HasSubstr("touch, grab, cut or idle")));
     EXPECT_THAT(error_of("0 0 0 0 1 0 0 0\n"), AllOf(HasSubstr("line 1"), HasSubstr("action")));
     EXPECT_THAT(error_of("0 0 0 0 1 1 0 0 touch\n"), AllOf(HasSubstr("line 1"), HasSubstr("orientation")));
     EXPECT_THAT(error_of("1 0 0 0 1 0 0 0 touch\n0 0 0 0 1 0 0 0 touch\n"), HasSubstr("line 2"));
