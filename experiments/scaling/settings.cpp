@@ -92,7 +92,7 @@ void complete(ScalingSettings& settings) {
     }
     if (settings.steps == 0) settings.steps = is_quick ? 25 : 50;
     if (settings.extra_rounds < 0) settings.extra_rounds = is_quick ? 0 : 3;
-    if (settings.repetitions == 0) settings.repetitions = is_quick ? 2 : 5;
+    if (settings.repetitions == 0) settings.repetitions = is_quick ? 1 : 5;
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ std::optional<ScalingSettings> parse_settings(int argc, const char* const* argv)
         ->check(CLI::IsMember({"default", "original"}));
     app.add_option("--steps", settings.steps, "Steps of 40 ms of each run; 50, or 25 with --quick")
         ->check(CLI::Range(1, 1'000'000));
-    app.add_option("--repetitions", settings.repetitions, "Runs of every row, interleaved; 5, or 2 with --quick")
+    app.add_option("--repetitions", settings.repetitions, "Runs of every row, interleaved; 5, or 1 with --quick")
         ->check(CLI::Range(1, 1000));
     app.add_option("--extra-rounds", settings.extra_rounds,
                    "More rounds, at most, for rows that the machine's load disturbed; 3, or none with --quick")
