@@ -19,7 +19,7 @@ std::array<Point, 4> corners_at_rest(const TetMesh& mesh, std::int32_t element) 
 
 class Builder {
   public:
-    Builder(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets)
+    Builder(const CutMesh& cut, std::int32_t element, SurfaceFacets& facets)
         : cut_(cut),
           facets_(facets),
           parts_(cut.parts_of_element(element)),
@@ -99,7 +99,7 @@ class Builder {
     }
 
     const CutMesh& cut_;
-    const SurfaceFacets& facets_;
+    SurfaceFacets& facets_;
     std::vector<std::int32_t> parts_;
     ElementCells cells_;
     PatchBuilder builder_;
@@ -108,7 +108,7 @@ class Builder {
 
 }  // namespace
 
-ElementPatch element_patch(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets,
+ElementPatch element_patch(const CutMesh& cut, std::int32_t element, SurfaceFacets& facets,
                            std::span<const std::int32_t> triangles, const Inside& is_inside) {
     Builder builder(cut, element, facets);
     for (const std::int32_t triangle : triangles) builder.add_triangle(triangle);

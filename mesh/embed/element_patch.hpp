@@ -35,13 +35,13 @@ using Inside = std::function<bool(const Point&)>;
 /// The pieces of triangles in the cells of an element and, with `is_inside`, the walls: what lies inside of the surface
 /// of the sections between parts with different copies. The triangles must be all that come near the element for
 /// walls. Everything is decided exactly (see SurfaceFacets).
-ElementPatch element_patch(const CutMesh& cut, std::int32_t element, const SurfaceFacets& facets,
+ElementPatch element_patch(const CutMesh& cut, std::int32_t element, SurfaceFacets& facets,
                            std::span<const std::int32_t> triangles, const Inside& is_inside = {});
 
 /// The walls along the face between two elements, the first of which a cut has touched: what lies inside of the surface
 /// where parts on both sides of the face have different copies at its corners. The triangles must be all that come near
 /// the face.
-ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t neighbour, const SurfaceFacets& facets,
+ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t neighbour, SurfaceFacets& facets,
                         std::span<const std::int32_t> triangles, const Inside& is_inside);
 
 }  // namespace lancet::mesh

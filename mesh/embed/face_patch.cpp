@@ -28,7 +28,7 @@ FaceCorners face_corners(const Tetrahedron& a, const Tetrahedron& b) {
 
 }  // namespace
 
-ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t neighbour, const SurfaceFacets& facets,
+ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t neighbour, SurfaceFacets& facets,
                         std::span<const std::int32_t> triangles, const Inside& is_inside) {
     const Tetrahedron& nodes = cut.mesh().tetrahedra()[static_cast<std::size_t>(element)];
     const FaceCorners corners = face_corners(nodes, cut.mesh().tetrahedra()[static_cast<std::size_t>(neighbour)]);
@@ -53,7 +53,6 @@ ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t n
         at_rest[k] = cut.mesh().nodes()[static_cast<std::size_t>(nodes[static_cast<std::size_t>(corners.first[k])])];
     }
     PatchBuilder builder(PlanePool{}, at_rest);
-    for (const std::int32_t triangle : triangles) builder.add_triangle(facets, triangle);
     const FaceSide side{.cells = cut.cells(element),
                         .face = corners.first[3],
                         .corners = {corners.first[0], corners.first[1], corners.first[2]}};
@@ -62,6 +61,11 @@ ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t n
                           .corners = {corners.second[0], corners.second[1], corners.second[2]}};
     const std::vector<FacePiece> pieces = face_pieces(builder.pool(), side),
                                  pieces_behind = face_pieces(builder.pool(), behind);
+    struct Opened {
+        Polygon polygon;
+        std::int32_t part, other;
+    };
+    std::vector<Opened> opened;
     for (const FacePiece& a : pieces) {
         for (const FacePiece& b : pieces_behind) {
             const std::int32_t part = parts[static_cast<std::size_t>(a.part)],
@@ -72,9 +76,13 @@ ElementPatch face_patch(const CutMesh& cut, std::int32_t element, std::int32_t n
                 common = clip(builder.pool(), common, edge);
                 if (common.points.empty()) break;
             }
-            if (common.points.empty()) continue;
-            builder.add_wall(common, {part, corners.first}, {other, corners.second}, is_inside);
+            if (!common.points.empty()) opened.push_back({std::move(common), part, other});
         }
+    }
+    if (opened.empty()) return {};
+    for (const std::int32_t triangle : triangles) builder.add_triangle(facets, triangle);
+    for (const Opened& wall : opened) {
+        builder.add_wall(wall.polygon, {wall.part, corners.first}, {wall.other, corners.second}, is_inside);
     }
     return std::move(builder.patch());
 }

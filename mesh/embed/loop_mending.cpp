@@ -47,21 +47,24 @@ class Mender {
     Mender(const CutMesh& cut, std::span<const MaterialPoint> points, std::span<const Point> at_rest, double distance)
         : cut_(cut), points_(points), at_rest_(at_rest), distance_(distance) {}
 
-    /// Finds unmatched sides. Returns false where there are none.
+    /// Finds unmatched sides. Returns false where there are none, but for those of triangles in several parts, which
+    /// have undivided neighbours.
     bool look(const std::vector<PartRegion>& regions) {
         for_each_side(regions,
                       [&](const PartRegion&, std::int32_t a, std::int32_t b) { excess_[key(a, b)] += a < b ? 1 : -1; });
         std::set<std::int32_t> ends;
-        for_each_side(regions, [&](const PartRegion&, std::int32_t a, std::int32_t b) {
+        bool is_incomplete = false;
+        for_each_side(regions, [&](const PartRegion& region, std::int32_t a, std::int32_t b) {
             if (is_matched(a, b)) return;
             ends.insert({a, b});
+            is_incomplete = is_incomplete || region.part >= 0;
         });
         for (const std::int32_t vertex : ends) {
             const MaterialPoint& point = points_[static_cast<std::size_t>(vertex)];
             const auto heaviest = std::ranges::max_element(point.weights) - point.weights.begin();
             ends_at_[copies(point.part)[static_cast<std::size_t>(heaviest)]].push_back(vertex);
         }
-        return !ends.empty();
+        return is_incomplete;
     }
 
     void mend(PartRegion& region) const {

@@ -4,14 +4,14 @@
 
 namespace lancet::mesh {
 
-const PooledTriangle* PatchBuilder::add_triangle(const SurfaceFacets& facets, std::int32_t triangle) {
-    CutSurface surface = facets.facet(triangle);
+const PooledTriangle* PatchBuilder::add_triangle(SurfaceFacets& facets, std::int32_t triangle) {
+    const CutSurface& surface = facets.facet(triangle);
     const Facet& facet = surface.facets().front();
     if (!may_touch(facet, at_rest_)) return nullptr;
     PooledTriangle pooled{.triangle = triangle, .edges = facets.edges_of(triangle)};
     pooled.plane = pool_.add_plane(facet.plane, at_rest_);
     for (std::size_t k = 0; k < 3; ++k) pooled.borders[k] = pool_.add_plane(facet.borders[k].plane, at_rest_);
-    kept_.push_back(std::move(surface));
+    kept_.push_back(surface);
     return &triangles_.emplace_back(pooled);
 }
 

@@ -20,7 +20,7 @@ class PatchBuilder {
     PlanePool& pool() noexcept { return pool_; }
 
     /// Takes a triangle in; nothing where it does not touch the tetrahedron.
-    const PooledTriangle* add_triangle(const SurfaceFacets& facets, std::int32_t triangle);
+    const PooledTriangle* add_triangle(SurfaceFacets& facets, std::int32_t triangle);
 
     /// The number of a point as a corner of a part's polygons, always the same.
     std::int32_t corner(std::int32_t part, int point, const Barycentric& weights, std::int32_t vertex,

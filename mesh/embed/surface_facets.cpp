@@ -34,6 +34,7 @@ SurfaceFacets::SurfaceFacets(TriangleMesh surface) : surface_(std::move(surface)
     const auto box = bounds(surface_.vertices);
     const double reach = 0x1p-36 * std::hypot(box[1][0] - box[0][0], box[1][1] - box[0][1], box[1][2] - box[0][2]);
     moved_ = surface_;
+    facets_.resize(surface_.triangles.size());
     for (std::size_t v = 0; v < moved_.vertices.size(); ++v) {
         for (std::size_t axis = 0; axis < 3; ++axis) moved_.vertices[v][axis] += reach * scattered(3 * v + axis);
     }
@@ -51,13 +52,15 @@ SurfaceFacets::SurfaceFacets(TriangleMesh surface) : surface_(std::move(surface)
     }
 }
 
-CutSurface SurfaceFacets::facet(std::int32_t triangle) const {
+const CutSurface& SurfaceFacets::facet(std::int32_t triangle) {
+    std::optional<CutSurface>& facet = facets_[static_cast<std::size_t>(triangle)];
+    if (facet) return *facet;
     std::array<Point, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = moved_.vertices[static_cast<std::size_t>(moved_.triangles[static_cast<std::size_t>(triangle)][k])];
     }
     constexpr std::array<Triangle, 1> triangles{{{0, 1, 2}}};
-    return CutSurface::triangulated(corners, triangles);
+    return facet.emplace(CutSurface::triangulated(corners, triangles));
 }
 
 }  // namespace lancet::mesh

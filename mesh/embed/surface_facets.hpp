@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,9 @@ class SurfaceFacets {
     const TriangleMesh& surface() const noexcept { return surface_; }
     /// The copy that is intersected.
     const TriangleMesh& moved() const noexcept { return moved_; }
-    /// A triangle of the copy as one facet: its border k stands on the edge from corner k to the next.
-    CutSurface facet(std::int32_t triangle) const;
+    /// A triangle of the copy as one facet: its border k stands on the edge from corner k to the next. It is made when
+    /// it is first asked for.
+    const CutSurface& facet(std::int32_t triangle);
     /// The numbers of these edges.
     const std::array<std::int32_t, 3>& edges_of(std::int32_t triangle) const {
         return edges_of_[static_cast<std::size_t>(triangle)];
@@ -41,6 +43,7 @@ class SurfaceFacets {
 
   private:
     TriangleMesh surface_, moved_;
+    std::vector<std::optional<CutSurface>> facets_;
     std::vector<std::array<std::int32_t, 3>> edges_of_;
     std::vector<std::array<std::int32_t, 2>> triangles_of_;
     bool is_closed_ = false;
