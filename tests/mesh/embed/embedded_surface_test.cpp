@@ -174,6 +174,24 @@ TEST(EmbeddedSurface, SectionsHaveTheAreaOfTheSurfacesSection) {
     expect_no_stretch(surface, cut);
 }
 
+TEST(EmbeddedSurface, WallsInsideOfOneElementHaveHoles) {
+    // Five elements carry all of a ring, whose section lies within the middle one and does not reach its border.
+    const TriangleMesh ring = torus({0.5, 0.5, 0.5}, 0.06, 0.02, 24, 12);
+    CutMesh cut(grid(1));
+    EmbeddedSurface surface(cut, ring);
+    cut.cut(CutSurface::plane({0.5, 0.5, 0.5}, {0, 0, 1}));
+    surface.update(cut);
+    const std::vector<Piece> found = pieces(surface, cut);
+    ASSERT_EQ(found.size(), 2U);
+    // Between regular polygons of 24 corners.
+    const double annulus = 12 * (0.08 * 0.08 - 0.04 * 0.04) * std::sin(std::numbers::pi / 12);
+    for (const Piece& piece : found) {
+        EXPECT_NEAR(piece.wall, annulus, lost);
+        EXPECT_NEAR(piece.volume, enclosed(ring) / 2, lost);
+    }
+    expect_no_stretch(surface, cut);
+}
+
 TEST(EmbeddedSurface, ACutHalfThroughLeavesOneClosedSurface) {
     for (const double where : {0.53, 0.5}) {
         SCOPED_TRACE(where);
