@@ -49,7 +49,7 @@ Table rate_table(const Interactive& run, const PipelineSettings& settings) {
     add("collision", settings.collision_rate, static_cast<double>(run.collisions) / run.seconds,
         std::llround(settings.seconds * settings.collision_rate),
         Cell(std::max<std::int64_t>(0, std::llround(settings.seconds * settings.collision_rate) - run.collisions)),
-        seconds_of(run, "collision"), {});
+        seconds_of(run, "tool collision"), {});
     add("frame", settings.frame_rate, static_cast<double>(run.frames.observed) / run.seconds, run.frames.due,
         run.frames.dropped, run.picture_seconds, run.frame_latency);
     if (settings.is_paced) {

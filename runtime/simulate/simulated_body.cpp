@@ -37,6 +37,10 @@ SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const
         body_ = make_body(definition_.scene, definition_.settings, scheduler);
     }
     const mesh::TetMesh& mesh = definition_.scene.mesh;
+    if (definition_.surface) {
+        fine_ = std::make_unique<mesh::EmbeddedSurface>(cuttable_ ? cuttable_->mesh() : mesh::CutMesh(mesh),
+                                                        *definition_.surface);
+    }
     // A regular tetrahedron of edge a has the volume a^3 / (6 sqrt 2).
     element_size_ = std::cbrt(mesh.volume() / static_cast<double>(mesh.tetrahedra().size()) * 6 * std::numbers::sqrt2);
     scene_loads_ = external_loads(definition_.scene);
@@ -68,9 +72,21 @@ CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& h
     return update;
 }
 
-void SimulatedBody::renew_surface() {
-    auto surface = std::make_shared<CarriedSurface>(cuttable_ && cuts_ > 0 ? boundary_surface(cuttable_->mesh())
-                                                                           : boundary_surface(definition_.scene.mesh));
+void SimulatedBody::renew_surface(bool is_solid) {
+    const bool is_cut = cuttable_ && cuts_ > 0;
+    const mesh::TetMesh& mesh = definition_.scene.mesh;
+    std::shared_ptr<CarriedSurface> surface;
+    if (fine_) {
+        if (is_cut) fine_->update(cuttable_->mesh());
+        surface = std::make_shared<CarriedSurface>(carried_surface(*fine_));
+    } else {
+        surface =
+            std::make_shared<CarriedSurface>(is_cut ? boundary_surface(cuttable_->mesh()) : boundary_surface(mesh));
+    }
+    if (is_solid) {
+        surface->solid =
+            std::make_shared<const CarriedSolid>(is_cut ? carried_solid(cuttable_->mesh()) : carried_solid(mesh));
+    }
     surface->version = surface_ ? surface_->version + 1 : 0;
     surface_ = std::move(surface);
     surface_cuts_ = cuts_;
@@ -82,10 +98,10 @@ void SimulatedBody::clear_forces() {
     if (had_forces_ || loads_.size() != scene_loads_.size()) loads_ = scene_loads_;
 }
 
-void SimulatedBody::add_force(const SurfacePoint& point, const Point& force) {
+void SimulatedBody::add_force(const AttachedPoint& point, const Point& force, bool wakes) {
     if (force == Point{}) return;
     has_forces_ = true;
-    wake();
+    if (wakes) wake();
     for_each_node(point, [&](std::int32_t node, double weight) {
         Point& load = loads_[static_cast<std::size_t>(node)];
         for (std::size_t axis = 0; axis < 3; ++axis) load[axis] += weight * force[axis];
@@ -96,7 +112,7 @@ void SimulatedBody::apply_forces() {
     if (has_forces_ || had_forces_) body().set_loads(loads_);
 }
 
-Point SimulatedBody::position(const SurfacePoint& point) const {
+Point SimulatedBody::position(const AttachedPoint& point) const {
     Point at{};
     for_each_node(point, [&](std::int32_t node, double weight) {
         const Point of_node = body().position(node);

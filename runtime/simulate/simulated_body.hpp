@@ -22,6 +22,11 @@ struct BodyDefinition {
     Settings settings{};
     bool can_be_cut = false;  ///< without it nothing of cutting is kept or run
     CutOptions cuts{};
+    /// What is drawn and touched by tools, closed and inside of the mesh; none: the boundary of the mesh. At blended
+    /// fronts surfaces open when the front has passed.
+    std::optional<mesh::TriangleMesh> surface{};
+    bool collides_with_others = true;   ///< that do, too
+    bool collides_with_itself = false;  ///< with the walls of its wounds, for example
 };
 
 /// When a body that hardly moves is not computed any more. It wakes by a load, a touch or a cut.
@@ -46,6 +51,8 @@ class SimulatedBody {
                   const SleepOptions& sleep, Scheduler& scheduler);
 
     const std::string& name() const noexcept { return definition_.name; }
+    bool collides_with_others() const noexcept { return definition_.collides_with_others; }
+    bool collides_with_itself() const noexcept { return definition_.collides_with_itself; }
     bool can_be_cut() const noexcept { return cuttable_ != nullptr; }
     bool has_system() const noexcept { return !is_explicit(definition_.settings.integrator); }
     int steps_per_world_step() const noexcept { return steps_per_world_step_; }
@@ -69,23 +76,26 @@ class SimulatedBody {
     /// Whether cuts have changed the surface since it was made.
     bool surface_is_old() const noexcept { return surface_cuts_ != cuts_; }
     std::int64_t cuts() const noexcept { return cuts_; }
-    /// Makes the surface as cuts have left it.
-    void renew_surface();
+    /// Makes the surface as cuts have left it; with the solid, where `is_solid`.
+    void renew_surface(bool is_solid);
     std::shared_ptr<const CarriedSurface> surface() const noexcept { return surface_; }
 
     /// Starts collecting forces for the next step.
     void clear_forces();
-    /// A force on a point of the surface. Wakes the body.
-    void add_force(const SurfacePoint& point, const Point& force);
+    /// A force on a point of the material. Where it `wakes`, the body wakes.
+    void add_force(const AttachedPoint& point, const Point& force, bool wakes = true);
+    /// Asleep, or on the way to it.
+    bool is_quiet() const noexcept { return is_asleep_ || rested_ > 0; }
+    double mean_mass() const noexcept { return mean_mass_; }
     /// Hands the collected forces to the body, beside the loads of its scene.
     void apply_forces();
 
-    /// Where a point of the surface is.
-    Point position(const SurfacePoint& point) const;
-    /// Calls visit(node, weight) for what a point of the surface hangs on; nodes may repeat.
+    /// Where a point of the material is.
+    Point position(const AttachedPoint& point) const;
+    /// Calls visit(node, weight) for what a point of the material hangs on; nodes may repeat.
     template <class Visit>
-    void for_each_node(const SurfacePoint& point, const Visit& visit) const {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
+    void for_each_node(const AttachedPoint& point, const Visit& visit) const {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
             if (point.weights[corner] == 0) continue;
             const mesh::Tetrahedron& nodes = nodes_of(point.corners[corner].part);
             for (std::size_t k = 0; k < 4; ++k) {
@@ -123,6 +133,7 @@ class SimulatedBody {
     double element_size_ = 0;
     std::unique_ptr<DeformableBody> body_;
     std::unique_ptr<CuttableBody> cuttable_;
+    std::unique_ptr<mesh::EmbeddedSurface> fine_;
     std::shared_ptr<const CarriedSurface> surface_;
     std::int64_t lost_steps_ = 0;
     std::int64_t cuts_ = 0;           ///< that have changed something

@@ -117,10 +117,11 @@ void Simulation::step() {
     for (std::size_t body = 0; body < bodies_.size(); ++body) before_[body] = bodies_[body]->latest();
     const double shown = options_.overlap ? time() : time() + options_.time_step;
     frame_is_due_ = has_surfaces() && frame_rate_.due(shown);
-    collision_is_due_ = !tools_.empty() && collision_rate_.due(shown);
+    collision_is_due_ = (!tools_.empty() || bodies_collide()) && collision_rate_.due(shown);
     if (collision_is_due_) ++collisions_;
     if (options_.overlap) {
         for (const auto& tool : tools_) tool->contacts.swap(tool->found);
+        body_contacts_.swap(found_body_contacts_);
     }
     graph_.run(*scheduler_);
     ++steps_;
@@ -191,6 +192,11 @@ const Simulation::Tool& Simulation::tool_at(int tool) const {
                     std::to_string(tools_.size()));
     }
     return *tools_[static_cast<std::size_t>(tool)];
+}
+
+bool Simulation::bodies_collide() const noexcept {
+    const auto others = std::ranges::count_if(bodies_, [](const auto& body) { return body->collides_with_others(); });
+    return others > 1 || std::ranges::any_of(bodies_, [](const auto& body) { return body->collides_with_itself(); });
 }
 
 bool Simulation::has_blade() const noexcept {

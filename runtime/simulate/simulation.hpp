@@ -11,10 +11,10 @@
 
 #include "lancet/runtime/observe/task_observer.hpp"
 #include "lancet/runtime/schedule/step_graph.hpp"
+#include "lancet/runtime/simulate/body_contacts.hpp"
 #include "lancet/runtime/simulate/frame_thread.hpp"
 #include "lancet/runtime/simulate/rate.hpp"
 #include "lancet/runtime/simulate/sample_queue.hpp"
-#include "lancet/runtime/simulate/simulated_body.hpp"
 #include "lancet/runtime/simulate/touchable_surface.hpp"
 
 namespace lancet::runtime {
@@ -76,9 +76,12 @@ struct CutStatistics {
 ///
 /// The tasks of a step and what they wait for:
 ///
-///     input -> cut -> forces on bodies -> [forces -> matrix -> solve -> update] -> snapshot -> force feedback
-///     surface -> frame             beside them, from the last snapshot
-///     collision                    likewise
+///     input -> cut -> contact forces -> [forces -> matrix -> solve -> update] -> snapshot, force feedback
+///     surface -> frame                     beside them, from the last snapshot
+///     tool collision, body collision       likewise
+///
+/// Contacts are penalties: springs that are as stiff as is stable for a force that is constant over a step, so they
+/// give way by more with longer steps. There is no friction.
 ///
 /// What a scene does not need is no task of its graph.
 class Simulation {
@@ -169,10 +172,14 @@ class Simulation {
 
     void take_input();
     void cut(SimulatedBody& body, std::size_t number);
+    /// Whether bodies can collide with each other or themselves.
+    bool bodies_collide() const noexcept;
     void push_bodies();
+    void push_apart();
     void take_hold(Tool& tool);
     void stiffen_contacts(Tool& tool);
-    void find_contacts();
+    void find_tool_contacts();
+    void find_body_contacts();
     void evaluate_surface(std::size_t body);
     void make_frame();
     void feel();
@@ -198,6 +205,8 @@ class Simulation {
     bool frame_is_due_ = false, collision_is_due_ = false;
     std::vector<Snapshots<MotionSnapshot>::Reader> before_;  ///< [body] the state that the step starts from
     std::vector<TouchableSurface> touchable_;                ///< [body]
+    std::optional<BodyContactFinder> body_contact_finder_;
+    std::vector<BodyContact> body_contacts_, found_body_contacts_;  ///< acting, and found by the collision task
     std::int64_t collisions_ = 0, frames_due_ = 0, frames_dropped_ = 0;
     CutStatistics cut_statistics_;
 };

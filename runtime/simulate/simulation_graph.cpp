@@ -48,22 +48,26 @@ StepGraph::Task Simulation::add_steps(int number, const std::optional<Task>& bef
 
 void Simulation::build_graph() {
     graph_ = StepGraph();
-    const bool has_tools = !tools_.empty();
-    const bool has_snapshots = has_surfaces() || has_tools;
+    const bool has_tools = !tools_.empty(), collides = bodies_collide() && collision_rate_.ever();
+    const bool has_snapshots = has_surfaces() || has_tools || collides;
     before_.resize(bodies_.size());
+    body_contact_finder_.reset();
+    if (collides) body_contact_finder_.emplace(bodies_, options_.broad_phase);
 
-    std::optional<Task> input, collision, forces, feedback, frame;
+    std::optional<Task> input, forces, feedback, frame;
+    if (has_tools || collides) forces = add_task("contact forces", [this] { push_bodies(); });
     if (has_tools) {
         input = add_task("input", [this] { take_input(); });
-        forces = add_task("tool forces", [this] { push_bodies(); });
         input->precede(*forces);
         feedback = add_task("force feedback", [this] { feel(); });
-        if (collision_rate_.ever()) {
-            collision = add_task("collision", [this] { find_contacts(); });
-            input->precede(*collision);
-            if (!options_.overlap) collision->precede(*forces);
-        }
     }
+    const auto add_collision = [&](const std::string& name, std::function<void()> find) {
+        const Task collision = add_task(name, std::move(find));
+        if (input) input->precede(collision);
+        if (!options_.overlap) collision.precede(*forces);
+    };
+    if (has_tools && collision_rate_.ever()) add_collision("tool collision", [this] { find_tool_contacts(); });
+    if (collides) add_collision("body collision", [this] { find_body_contacts(); });
     if (frame_thread_ != nullptr) frame = add_task("frame", [this] { make_frame(); });
     for (std::size_t number = 0; number < bodies_.size(); ++number) {
         SimulatedBody& body = *bodies_[number];
@@ -72,8 +76,8 @@ void Simulation::build_graph() {
             const Task cutting = add_task(body.name() + ": cut", [this, &body, number] { cut(body, number); });
             input->precede(cutting);
             cutting.precede(*forces);
-            renewal = add_task(body.name() + ": surface renewal", [&body] {
-                if (body.surface_is_old()) body.renew_surface();
+            renewal = add_task(body.name() + ": surface renewal", [&body, collides] {
+                if (body.surface_is_old()) body.renew_surface(collides);
             });
             cutting.precede(*renewal);
         }
@@ -81,7 +85,9 @@ void Simulation::build_graph() {
         if (feedback) last.precede(*feedback);
         if (!has_snapshots && !(options_.sleep.speed > 0)) continue;
         if (has_snapshots) {
-            if (body.surface() == nullptr) body.renew_surface();
+            if (body.surface() == nullptr || (collides && body.surface()->solid == nullptr)) {
+                body.renew_surface(collides);
+            }
             body.publish(steps_, time());
         }
         const Task snapshot = add_task(body.name() + ": snapshot", [this, &body, has_snapshots] {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lancet/runtime/collide/vector3.hpp"
 #include "lancet/runtime/observe/clock.hpp"
 #include "lancet/runtime/simulate/simulation.hpp"
 
@@ -99,7 +100,25 @@ void Simulation::push_bodies() {
             }
         }
     }
+    push_apart();
     for (const auto& body : bodies_) body->apply_forces();
+}
+
+void Simulation::push_apart() {
+    const double h = options_.time_step;
+    for (const BodyContact& contact : body_contacts_) {
+        SimulatedBody& first = *bodies_[static_cast<std::size_t>(contact.first)];
+        SimulatedBody& second = *bodies_[static_cast<std::size_t>(contact.second)];
+        // As they have moved since the contact was found.
+        const Point gap = subtract(first.position(contact.on_first), second.position(contact.on_second));
+        const double depth = contact.depth - dot(gap, contact.normal);
+        if (!(depth > 0)) continue;
+        // Several vertices may be in one element: less than a tool gets, see SimulatedBody::stiffen.
+        const double stiffness = std::min(first.mean_mass(), second.mean_mass()) / (4 * h * h);
+        const Point force = scale(contact.normal, stiffness * depth);
+        first.add_force(contact.on_first, force, !second.is_quiet());
+        second.add_force(contact.on_second, scale(force, -1), !first.is_quiet());
+    }
 }
 
 void Simulation::evaluate_surface(std::size_t number) {

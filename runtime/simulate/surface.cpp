@@ -1,49 +1,72 @@
 #include "lancet/runtime/simulate/surface.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "lancet/mesh/boundary.hpp"
 #include "lancet/mesh/cut/part_geometry.hpp"
+#include "lancet/mesh/embed/embedding.hpp"
 
 namespace lancet::runtime {
 
 namespace {
 
-constexpr std::size_t vertices_per_block = 1024;
+constexpr std::size_t points_per_block = 1024;
 
 template <class Body>
-void for_each_block_of_vertices(Scheduler& scheduler, std::size_t vertices, const Body& body) {
-    const auto blocks = static_cast<int>((vertices + vertices_per_block - 1) / vertices_per_block);
+void for_each_block_of_points(Scheduler& scheduler, std::size_t points, const Body& body) {
+    const auto blocks = static_cast<int>((points + points_per_block - 1) / points_per_block);
     scheduler.for_each_block(blocks, [&](int block) {
-        const std::size_t begin = static_cast<std::size_t>(block) * vertices_per_block;
-        body(begin, std::min(vertices, begin + vertices_per_block));
+        const std::size_t begin = static_cast<std::size_t>(block) * points_per_block;
+        body(begin, std::min(points, begin + points_per_block));
     });
+}
+
+/// Numbers what triangles use of some points, in the order of its first use.
+class Renumbering {
+  public:
+    explicit Renumbering(std::size_t points) : number_(points, -1) {}
+
+    /// The new number; calls add() where it is the first time.
+    template <class Add>
+    std::int32_t of(std::int32_t point, const Add& add) {
+        std::int32_t& number = number_[static_cast<std::size_t>(point)];
+        if (number < 0) {
+            number = count_++;
+            add();
+        }
+        return number;
+    }
+
+  private:
+    std::vector<std::int32_t> number_;
+    std::int32_t count_ = 0;
+};
+
+/// The corner of an element as a point of its material.
+mesh::MaterialPoint corner_of(const mesh::Tetrahedron& nodes, std::int32_t element, std::int32_t node) {
+    mesh::MaterialPoint point{.part = element};
+    point.weights[static_cast<std::size_t>(std::ranges::find(nodes, node) - nodes.begin())] = 1;
+    return point;
 }
 
 }  // namespace
 
 CarriedSurface boundary_surface(const mesh::TetMesh& mesh) {
     CarriedSurface surface;
-    std::vector<std::int32_t> vertex_of_node(mesh.nodes().size(), -1);
+    Renumbering vertices(mesh.nodes().size());
     const mesh::Boundary boundary = mesh::boundary(mesh);
     for (std::size_t t = 0; t < boundary.triangles.size(); ++t) {
+        const std::int32_t element = boundary.elements[t];
+        const mesh::Tetrahedron& nodes = mesh.tetrahedra()[static_cast<std::size_t>(element)];
         mesh::Triangle triangle = boundary.triangles[t];
-        const mesh::Tetrahedron& nodes = mesh.tetrahedra()[static_cast<std::size_t>(boundary.elements[t])];
         for (std::int32_t& corner : triangle) {
-            std::int32_t& vertex = vertex_of_node[static_cast<std::size_t>(corner)];
-            if (vertex < 0) {
-                vertex = static_cast<std::int32_t>(surface.parts.size());
-                surface.parts.push_back(boundary.elements[t]);
-                mesh::Barycentric& weights = surface.weights.emplace_back();
-                weights[static_cast<std::size_t>(std::ranges::find(nodes, corner) - nodes.begin())] = 1;
-                surface.nodes.push_back(nodes);
-            }
-            corner = vertex;
+            corner = vertices.of(corner, [&] { surface.vertices.add(corner_of(nodes, element, corner), nodes); });
         }
         surface.triangles.push_back(triangle);
     }
     surface.is_wall.assign(surface.triangles.size(), 0);
-    surface.corners = {surface.parts.size(), surface.triangles};
+    surface.corners = {surface.vertices.size(), surface.triangles};
     return surface;
 }
 
@@ -51,45 +74,72 @@ CarriedSurface boundary_surface(const mesh::CutMesh& cut) {
     mesh::PartGeometry geometry = mesh::part_geometry(cut);
     CarriedSurface surface;
     surface.is_wall = std::move(geometry.is_wall);
-    std::vector<std::int32_t> vertex_of_point(geometry.points.size(), -1);
+    Renumbering vertices(geometry.points.size());
     for (mesh::Triangle triangle : geometry.triangles) {
         for (std::int32_t& corner : triangle) {
-            std::int32_t& vertex = vertex_of_point[static_cast<std::size_t>(corner)];
-            if (vertex < 0) {
-                const auto& [part, weights] = geometry.points[static_cast<std::size_t>(corner)];
-                vertex = static_cast<std::int32_t>(surface.parts.size());
-                surface.parts.push_back(part);
-                surface.weights.push_back(weights);
-                surface.nodes.push_back(cut.parts()[static_cast<std::size_t>(part)]);
-            }
-            corner = vertex;
+            corner = vertices.of(corner, [&] {
+                const mesh::MaterialPoint& point = geometry.points[static_cast<std::size_t>(corner)];
+                surface.vertices.add(point, cut.parts()[static_cast<std::size_t>(point.part)]);
+            });
         }
         surface.triangles.push_back(triangle);
     }
-    surface.corners = {surface.parts.size(), surface.triangles};
+    surface.corners = {surface.vertices.size(), surface.triangles};
     return surface;
 }
 
-void place(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, std::vector<Point>& out) {
-    out.resize(surface.parts.size());
-    for_each_block_of_vertices(scheduler, out.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t vertex = begin; vertex < end; ++vertex) {
-            Point at{};
-            for (std::size_t k = 0; k < 4; ++k) {
-                const Point& node = nodes[static_cast<std::size_t>(surface.nodes[vertex][k])];
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    at[axis] += surface.weights[vertex][k] * node[axis];
-                }
-            }
-            out[vertex] = at;
+CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine) {
+    CarriedSurface surface;
+    for (std::size_t vertex = 0; vertex < fine.points().size(); ++vertex) {
+        surface.vertices.add(fine.points()[vertex], fine.copies()[vertex]);
+    }
+    surface.triangles.assign(fine.triangles().begin(), fine.triangles().end());
+    surface.is_wall.assign(fine.is_wall().begin(), fine.is_wall().end());
+    surface.corners = {surface.vertices.size(), surface.triangles};
+    return surface;
+}
+
+CarriedSolid carried_solid(const mesh::TetMesh& mesh) {
+    CarriedSolid solid;
+    std::vector<std::int32_t> element_of(mesh.nodes().size(), 0);
+    for (std::size_t element = 0; element < mesh.tetrahedra().size(); ++element) {
+        for (const std::int32_t node : mesh.tetrahedra()[element]) {
+            element_of[static_cast<std::size_t>(node)] = static_cast<std::int32_t>(element);
         }
+    }
+    for (std::size_t node = 0; node < element_of.size(); ++node) {
+        const mesh::Tetrahedron& nodes = mesh.tetrahedra()[static_cast<std::size_t>(element_of[node])];
+        solid.points.add(corner_of(nodes, element_of[node], static_cast<std::int32_t>(node)), nodes);
+    }
+    solid.tetrahedra.assign(mesh.tetrahedra().begin(), mesh.tetrahedra().end());
+    solid.triangles = mesh::boundary(mesh).triangles;
+    return solid;
+}
+
+CarriedSolid carried_solid(const mesh::CutMesh& cut) {
+    mesh::PartGeometry geometry = mesh::part_geometry(cut);
+    CarriedSolid solid;
+    for (const mesh::MaterialPoint& point : geometry.points) {
+        solid.points.add(point, cut.parts()[static_cast<std::size_t>(point.part)]);
+    }
+    solid.tetrahedra = std::move(geometry.tetrahedra);
+    solid.triangles = std::move(geometry.triangles);
+    return solid;
+}
+
+void place(Scheduler& scheduler, const CarriedPoints& points, std::span<const Point> nodes, std::vector<Point>& out) {
+    out.resize(points.size());
+    for_each_block_of_points(scheduler, out.size(), [&](std::size_t begin, std::size_t end) {
+        const std::size_t count = end - begin;
+        mesh::place(std::span(points.nodes).subspan(begin, count), std::span(points.weights).subspan(begin, count),
+                    nodes, std::span(out).subspan(begin, count));
     });
 }
 
 void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out) {
-    place(scheduler, surface, nodes, out.positions);
+    place(scheduler, surface.vertices, nodes, out.positions);
     out.normals.resize(out.positions.size());
-    for_each_block_of_vertices(scheduler, out.normals.size(), [&](std::size_t begin, std::size_t end) {
+    for_each_block_of_points(scheduler, out.normals.size(), [&](std::size_t begin, std::size_t end) {
         mesh::vertex_normals(surface.corners, out.positions, begin, end, out.normals);
     });
 }

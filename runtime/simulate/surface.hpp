@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/mesh/embed/embedded_surface.hpp"
 #include "lancet/mesh/surface/vertex_normals.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
 
@@ -14,22 +15,42 @@ namespace lancet::runtime {
 
 using mesh::Point;
 
+/// Points that a body carries: each is a point of the material.
+struct CarriedPoints {
+    std::vector<std::int32_t> parts;         ///< [point] that carry it; of a mesh without cuts the elements
+    std::vector<mesh::Tetrahedron> nodes;    ///< [point] of the body: those of the part
+    std::vector<mesh::Barycentric> weights;  ///< [point] of them
+
+    std::size_t size() const noexcept { return parts.size(); }
+    void add(const mesh::MaterialPoint& point, const mesh::Tetrahedron& of_part) {
+        parts.push_back(point.part);
+        nodes.push_back(of_part);
+        weights.push_back(point.weights);
+    }
+};
+
+/// What is solid of a body, for collisions: all pieces as tetrahedra, and their surface.
+struct CarriedSolid {
+    CarriedPoints points;
+    std::vector<mesh::Tetrahedron> tetrahedra;  ///< of points
+    std::vector<mesh::Triangle> triangles;      ///< of points, counter-clockwise as seen from outside
+};
+
 /// A surface of triangles that a body carries. Each vertex is a point of the material; where cuts open, vertices are
 /// there once for each side, and the walls of cuts are triangles, too.
 struct CarriedSurface {
-    std::int64_t version = 0;                ///< another number, another surface
-    std::vector<std::int32_t> parts;         ///< [vertex] that carry it; of a mesh without cuts the elements
-    std::vector<mesh::Tetrahedron> nodes;    ///< [vertex] of the body: those of the part
-    std::vector<mesh::Barycentric> weights;  ///< [vertex] of them
-    std::vector<mesh::Triangle> triangles;   ///< counter-clockwise as seen from outside
-    std::vector<std::uint8_t> is_wall;       ///< [triangle] 1: a cut made it
+    std::int64_t version = 0;  ///< another number, another surface
+    CarriedPoints vertices;
+    std::vector<mesh::Triangle> triangles;  ///< counter-clockwise as seen from outside
+    std::vector<std::uint8_t> is_wall;      ///< [triangle] 1: a cut made it
     mesh::VertexCorners corners;
+    std::shared_ptr<const CarriedSolid> solid;  ///< empty where nobody asks for it
 };
 
-/// A point of a triangle of a surface: three points of the material with weights that add up to 1.
-struct SurfacePoint {
-    std::array<mesh::MaterialPoint, 3> corners{};
-    std::array<double, 3> weights{1, 0, 0};
+/// A mean of up to four points of the material, such as a point of a triangle of a surface.
+struct AttachedPoint {
+    std::array<mesh::MaterialPoint, 4> corners{};
+    std::array<double, 4> weights{1, 0, 0, 0};  ///< they add up to 1
 };
 
 /// The surface of a body at some time.
@@ -45,9 +66,13 @@ struct SurfaceShape {
 CarriedSurface boundary_surface(const mesh::TetMesh& mesh);
 /// That of a cut mesh, walls included.
 CarriedSurface boundary_surface(const mesh::CutMesh& cut);
+/// A fine surface as cuts have left it.
+CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine);
+CarriedSolid carried_solid(const mesh::TetMesh& mesh);
+CarriedSolid carried_solid(const mesh::CutMesh& cut);
 
-/// Finds the places of vertices from those of the body's nodes; allocates only where the surface has grown.
-void place(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, std::vector<Point>& out);
+/// Finds the places of points from those of the body's nodes; allocates only where there are more than before.
+void place(Scheduler& scheduler, const CarriedPoints& points, std::span<const Point> nodes, std::vector<Point>& out);
 /// Positions and normals.
 void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out);
 

@@ -15,12 +15,12 @@ Point local(const Pose& pose, const Point& place) {
     return runtime::place({.position = {}, .orientation = {w, -x, -y, -z}}, subtract(place, pose.position));
 }
 
-SurfacePoint point_of(const CarriedSurface& surface, const ToolContact& contact) {
-    SurfacePoint point{.weights = contact.weights};
+AttachedPoint point_of(const CarriedSurface& surface, const ToolContact& contact) {
+    AttachedPoint point{.weights = {contact.weights[0], contact.weights[1], contact.weights[2], 0}};
     for (std::size_t corner = 0; corner < 3; ++corner) {
         const auto vertex =
             static_cast<std::size_t>(surface.triangles[static_cast<std::size_t>(contact.triangle)][corner]);
-        point.corners[corner] = {surface.parts[vertex], surface.weights[vertex]};
+        point.corners[corner] = {surface.vertices.parts[vertex], surface.vertices.weights[vertex]};
     }
     return point;
 }
@@ -34,9 +34,9 @@ void Simulation::take_hold(Tool& tool) {
         SimulatedBody& body = *bodies_[number];
         const CarriedSurface& surface = *before_[number]->surface;
         const auto begin = static_cast<std::ptrdiff_t>(tool.grabs.size());
-        for (std::size_t vertex = 0; vertex < surface.parts.size(); ++vertex) {
+        for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex) {
             ToolSpring spring{.body = static_cast<int>(number)};
-            spring.on_body.corners[0] = {surface.parts[vertex], surface.weights[vertex]};
+            spring.on_body.corners[0] = {surface.vertices.parts[vertex], surface.vertices.weights[vertex]};
             const Point at = body.position(spring.on_body);
             if (tool_distance(tool.axis, radius(tool.definition.shape), at).distance > reach) continue;
             spring.on_tool = local(tool.now.pose, at);
@@ -46,7 +46,7 @@ void Simulation::take_hold(Tool& tool) {
     }
 }
 
-void Simulation::find_contacts() {
+void Simulation::find_tool_contacts() {
     for (const auto& tool : tools_) {
         std::vector<ToolSpring>& found = options_.overlap ? tool->found : tool->contacts;
         if (!collision_is_due_) {
@@ -94,6 +94,18 @@ void Simulation::find_contacts() {
     for (const auto& tool : tools_) {
         if (tool->is_felt()) tool->tested = tool->now.pose;
     }
+}
+
+void Simulation::find_body_contacts() {
+    std::vector<BodyContact>& found = options_.overlap ? found_body_contacts_ : body_contacts_;
+    if (!collision_is_due_) {
+        if (options_.overlap) found_body_contacts_ = body_contacts_;
+        return;
+    }
+    std::vector<Snapshots<MotionSnapshot>::Reader> readers(bodies_.size());
+    std::vector<const MotionSnapshot*> snapshots;
+    for (std::size_t body = 0; body < bodies_.size(); ++body) snapshots.push_back(seen(body, readers[body]));
+    body_contact_finder_->find(*scheduler_, snapshots, found);
 }
 
 }  // namespace lancet::runtime

@@ -12,7 +12,7 @@ namespace lancet::runtime {
 /// contact pushes them apart along its normal, where the tool's point is behind the body's.
 struct ToolSpring {
     int body = 0;
-    SurfacePoint on_body{};
+    AttachedPoint on_body{};
     Point on_tool{};       ///< in the tool's frame
     Point normal{};        ///< out of the body, of unit length; zero: the spring grabs
     double share = 1;      ///< in (0, 1], of the stiffness that the body would bear

@@ -5,7 +5,7 @@
 namespace lancet::runtime {
 
 void TouchableSurface::update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes) {
-    place(scheduler, surface, nodes, positions_);
+    place(scheduler, surface.vertices, nodes, positions_);
     boxes_.resize(surface.triangles.size());
     for (std::size_t triangle = 0; triangle < boxes_.size(); ++triangle) {
         const auto& [a, b, c] = surface.triangles[triangle];

@@ -48,7 +48,7 @@ TEST(PipelineProgram, ShowsRatesTasksTraceGraphAndPictures) {
     const auto trace = nlohmann::json::parse(std::ifstream(at("t.json")));
     std::set<std::string> events;
     for (const auto& event : trace.at("traceEvents")) events.insert(event.at("name").get<std::string>());
-    for (const char* name : {"organ: solve", "organ: surface", "collision", "picture", "force feedback"}) {
+    for (const char* name : {"organ: solve", "organ: surface", "tool collision", "picture", "force feedback"}) {
         EXPECT_TRUE(events.contains(name)) << name;
     }
     EXPECT_THAT(test::read_text(at("g.dot")), testing::HasSubstr("\"organ: forces\" -> \"organ: matrix\""));

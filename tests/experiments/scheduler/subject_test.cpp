@@ -50,7 +50,7 @@ TEST(Subject, TellsWhatItsTasksTook) {
             EXPECT_GT(seconds.all, seconds.side);
         }
         const bool has_tool = extras == Extras::everything;
-        for (const std::string task : {"collision", "bar: cut", "input", "force feedback"}) {
+        for (const std::string task : {"tool collision", "bar: cut", "input", "force feedback"}) {
             EXPECT_EQ(subject->graph().find(task) != std::string::npos, has_tool) << task;
         }
     }
