@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/mesh/cut/part_geometry.hpp"
 #include "lancet/runtime/collide/vector3.hpp"
 
 namespace lancet::runtime {
@@ -210,6 +212,41 @@ TEST_F(VertexContacts, OfTheWallsOfACutAppearWhenTheyArePressed) {
         EXPECT_NEAR(contact.normal[2], is_upper[contact.vertex] ? 1 : -1, 1e-13);
     }
     EXPECT_EQ(walls, 2 * 9);
+}
+
+/// The same with a cut that runs through elements: what collides are the parts, with the walls of the cut.
+TEST_F(VertexContacts, OfTheWallsOfACutThroughElementsAppearWhenTheyArePressed) {
+    mesh::CutMesh cut(mesh::box({.cells = {6, 6, 4}}));
+    cut.cut(mesh::CutSurface::plane({0, 0, 0.43}, {0, 0, 1}));
+    const mesh::PartGeometry parts = mesh::part_geometry(cut);
+    std::vector<Point> positions = mesh::place(parts, cut, cut.rest_positions());
+    const std::vector<Point> rest = positions;
+    CollidableBody body(positions.size(), parts.tetrahedra, parts.triangles);
+    body.update(positions);
+    EXPECT_TRUE(find(body, body).empty()) << "closed, at rest";
+    EXPECT_EQ(finder_.unresolved(), 0U);
+    std::vector<bool> is_upper(positions.size());
+    for (const mesh::Tetrahedron& element : parts.tetrahedra) {
+        double middle = 0;
+        for (const std::int32_t node : element) middle += rest[node][2] / 4;
+        for (const std::int32_t node : element) is_upper[node] = middle > 0.43;
+    }
+    for (std::size_t node = 0; node < positions.size(); ++node) {
+        if (is_upper[node]) positions[node] = add(positions[node], {0.031, 0.017, -0.04});
+    }
+    body.update(positions);
+    int walls = 0;
+    for (const VertexContact& contact : find(body, body)) {
+        const Point& place = rest[contact.vertex];
+        // Away from the rim, where edges also lead out through the sides.
+        if (std::abs(place[0] - 0.5) > 0.2 || std::abs(place[1] - 0.5) > 0.2) continue;
+        ++walls;
+        // The corners of parts beside the wall are pressed in as well.
+        const double from_wall = std::abs(place[2] - 0.43);
+        EXPECT_NEAR(contact.depth, 0.04 - from_wall, 1e-12);
+        EXPECT_NEAR(contact.normal[2], is_upper[contact.vertex] ? 1 : -1, 1e-12);
+    }
+    EXPECT_GT(walls, 2 * 9);
 }
 
 TEST_F(VertexContacts, AreTheSameByEveryBroadPhaseAndScheduler) {
