@@ -27,6 +27,10 @@ runtime::Scene cube(Random& random) {
     runtime::Scene scene;
     scene.mesh = mesh::box({.cells = {4, 4, 4}, .split = random.chance(0.5) ? mesh::Split::five : mesh::Split::six});
     scene.materials[0] = {.young_modulus = 1e5, .poisson_ratio = 0.33, .density = 1000};
+    // Askew: conjugate gradients on a mirrored body under a mirrored load meet one class of its modes alone, and need
+    // half of the iterations, which no cut that is not mirrored leaves them.
+    const auto down = random.direction();
+    for (std::size_t axis = 0; axis < 3; ++axis) scene.gravity[axis] = 9.81 * down[axis];
     for (const bool highest : {false, true}) {
         for (const std::int32_t node : nodes_at_end(scene.mesh, highest)) scene.fixed_nodes.push_back(node);
     }
