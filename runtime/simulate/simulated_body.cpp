@@ -92,6 +92,13 @@ void SimulatedBody::renew_surface(bool is_solid) {
     surface_cuts_ = cuts_;
 }
 
+void SimulatedBody::set_loads(std::span<const Point> loads) {
+    body().set_loads(loads);
+    scene_loads_.assign(loads.begin(), loads.end());
+    loads_ = scene_loads_;
+    wake();
+}
+
 void SimulatedBody::clear_forces() {
     had_forces_ = has_forces_;
     has_forces_ = false;

@@ -80,6 +80,11 @@ class SimulatedBody {
     void renew_surface(bool is_solid);
     std::shared_ptr<const CarriedSurface> surface() const noexcept { return surface_; }
 
+    /// Dead loads on the nodes of the body as it is now, in place of those of its scene. Wakes the body. After a cut
+    /// the scene's own act again, on the nodes that there are then. Throws lancet::Error as DeformableBody::set_loads
+    /// does.
+    void set_loads(std::span<const Point> loads);
+
     /// Starts collecting forces for the next step.
     void clear_forces();
     /// A force on a point of the material. Where it `wakes`, the body wakes.

@@ -402,6 +402,23 @@ TEST(Simulation, ABodyAtRestSleepsUntilItIsTouched) {
     EXPECT_NE(positions(simulation.body(0)), asleep);
 }
 
+TEST(Simulation, ABodyWakesByALoad) {
+    const auto scheduler = make_scheduler(SchedulerKind::serial, 1);
+    Simulation simulation(*scheduler,
+                          {.time_step = time_step, .gravity = {0, 0, 0}, .sleep = {.speed = 1e-3, .after = 0.1}});
+    simulation.add_body(bar("bar"));
+    for (int step = 0; step < 10; ++step) simulation.step();
+    ASSERT_TRUE(simulation.body(0).is_asleep());
+    const auto asleep = positions(simulation.body(0));
+    std::vector<Point> loads(asleep.size());
+    loads.back() = {0, 50, 0};
+    simulation.body(0).set_loads(loads);
+    for (int step = 0; step < 5; ++step) simulation.step();
+    EXPECT_FALSE(simulation.body(0).is_asleep());
+    EXPECT_GT(positions(simulation.body(0)).back()[1], asleep.back()[1]);
+    EXPECT_THROW(simulation.body(0).set_loads(std::span(loads).first(3)), Error);
+}
+
 TEST(Simulation, ToolsAreMovedAndSurfacesAskedForFromOtherThreads) {
     const auto scheduler = make_scheduler(available_schedulers().back(), 2);
     Simulation simulation(*scheduler, {.time_step = time_step, .frame_rate = 50});
