@@ -207,6 +207,8 @@ class Simulation {
     std::vector<TouchableSurface> touchable_;                ///< [body]
     std::optional<BodyContactFinder> body_contact_finder_;
     std::vector<BodyContact> body_contacts_, found_body_contacts_;  ///< acting, and found by the collision task
+    std::vector<Snapshots<MotionSnapshot>::Reader> held_;           ///< [body] by the search for contacts of bodies
+    std::vector<const MotionSnapshot*> seen_;                       ///< [body] likewise
     std::int64_t collisions_ = 0, frames_due_ = 0, frames_dropped_ = 0;
     CutStatistics cut_statistics_;
 };

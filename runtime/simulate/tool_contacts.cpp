@@ -102,10 +102,11 @@ void Simulation::find_body_contacts() {
         if (options_.overlap) found_body_contacts_ = body_contacts_;
         return;
     }
-    std::vector<Snapshots<MotionSnapshot>::Reader> readers(bodies_.size());
-    std::vector<const MotionSnapshot*> snapshots;
-    for (std::size_t body = 0; body < bodies_.size(); ++body) snapshots.push_back(seen(body, readers[body]));
-    body_contact_finder_->find(*scheduler_, snapshots, found);
+    held_.resize(bodies_.size());
+    seen_.resize(bodies_.size());
+    for (std::size_t body = 0; body < bodies_.size(); ++body) seen_[body] = seen(body, held_[body]);
+    body_contact_finder_->find(*scheduler_, seen_, found);
+    for (auto& reader : held_) reader = {};
 }
 
 }  // namespace lancet::runtime

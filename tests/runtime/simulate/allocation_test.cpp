@@ -8,6 +8,9 @@
 #include "tests/runtime/solve/bodies_under_test.hpp"
 #include <gtest/gtest.h>
 
+#include "lancet/mesh/generate/box.hpp"
+#include "lancet/runtime/simulate/simulation.hpp"
+
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LANCET_SANITIZER_HAS_MALLOC 1
 #elif defined(__has_feature)
@@ -167,6 +170,39 @@ TEST_P(StepAllocation, IsNone) {
     EXPECT_GT(body->totals().repeats, 0);
     if (variant.preconditioner == runtime::PreconditionerKind::coarse) {
         EXPECT_GE(body->totals().coarse_refreshes, refreshes + 10);
+    }
+}
+
+// A world with everything but a cut: two bodies that touch, a tool that pushes, surfaces, collision, force feedback.
+TEST(SimulationAllocation, IsNone) {
+#if !defined(LANCET_COUNTS_MALLOC)
+    GTEST_SKIP() << "not run: malloc cannot be counted in this build";
+#endif
+    for (const auto& [kind, threads] :
+         {std::pair{runtime::SchedulerKind::serial, 1}, {runtime::SchedulerKind::threads, 3}}) {
+        const auto scheduler = runtime::make_scheduler(kind, threads);
+        runtime::Simulation simulation(*scheduler, {.time_step = 0.01, .frame_rate = 100});
+        for (const double height : {0.0, 0.29}) {
+            runtime::BodyDefinition body;
+            body.scene.mesh = mesh::box({.cells = {6, 3, 3}, .size = {0.6, 0.3, 0.3}, .origin = {0, height, 0}});
+            const auto nodes = body.scene.mesh.node_set("x_min");
+            body.scene.fixed_nodes.assign(nodes.begin(), nodes.end());
+            body.scene.materials[0].young_modulus = 1e6;
+            body.settings.time_step = 0.01;
+            body.can_be_cut = true;
+            simulation.add_body(std::move(body));
+        }
+        const int tool = simulation.add_tool({.shape = runtime::SphereTool{.radius = 0.05}});
+        simulation.keep_surfaces();
+        const auto step = [&](int number) {
+            simulation.move(tool, {.position = {0.5, 0.62 + 0.001 * (number % 2), 0.15}}, runtime::ToolAction::touch);
+            simulation.step();
+        };
+        for (int number = 0; number < 40; ++number) step(number);
+        ASSERT_FALSE(simulation.latest_forces(tool)->anchors.empty());
+        const long before = allocations;
+        for (int number = 0; number < 20; ++number) step(number);
+        EXPECT_EQ(allocations - before, 0) << runtime::to_string(kind);
     }
 }
 
