@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/global_control.h>
@@ -14,6 +16,19 @@
 
 namespace lancet::runtime {
 namespace {
+
+/// For each task the number of tasks in the longest chain that begins with it.
+std::vector<int> longest_chains(const GraphTopology& topology) {
+    std::vector<int> longest(static_cast<std::size_t>(topology.size()), 1);
+    const std::vector<int> order = topology.topological_order();
+    for (auto task = order.rbegin(); task != order.rend(); ++task) {
+        int& of_task = longest[static_cast<std::size_t>(*task)];
+        for (const int later : topology.successors(*task)) {
+            of_task = std::max(of_task, longest[static_cast<std::size_t>(later)] + 1);
+        }
+    }
+    return longest;
+}
 
 /// The step graph as a flow graph, built once. It belongs to the arena that it is built in.
 class TbbExecution final : public GraphExecution {
@@ -40,13 +55,19 @@ class TbbExecution final : public GraphExecution {
         for (int task = 0; task < topology().size(); ++task) {
             nodes_.emplace_back(*graph_, [this, task](const Message&) { run_task(task); });
         }
+        // Of the tasks that become ready at a time, a thread goes on with the one whose edge is the last, and leaves
+        // the others to whoever comes: the longest chain of tasks must not wait for a thread that comes late.
+        const std::vector<int> longest = longest_chains(topology());
+        const auto add_edges = [&](auto& from, std::vector<int> tasks) {
+            std::ranges::stable_sort(tasks, {}, [&](int task) { return longest[static_cast<std::size_t>(task)]; });
+            for (const int task : tasks) tbb::flow::make_edge(from, nodes_[static_cast<std::size_t>(task)]);
+        };
+        std::vector<int> first;
         for (int task = 0; task < topology().size(); ++task) {
-            auto& node = nodes_[static_cast<std::size_t>(task)];
-            if (topology().predecessors(task) == 0) tbb::flow::make_edge(*start_, node);
-            for (const int later : topology().successors(task)) {
-                tbb::flow::make_edge(node, nodes_[static_cast<std::size_t>(later)]);
-            }
+            if (topology().predecessors(task) == 0) first.push_back(task);
+            add_edges(nodes_[static_cast<std::size_t>(task)], topology().successors(task));
         }
+        add_edges(*start_, first);
     }
 
     tbb::task_arena& arena_;
