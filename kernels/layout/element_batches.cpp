@@ -26,7 +26,8 @@ std::vector<std::vector<std::int32_t>> elements_of_blocks(std::span<const Tetrah
         }
         std::sort(sorted[e].begin(), sorted[e].end());
         if (elements.empty()) continue;
-        const int block = numbering.is_free(sorted[e][0]) ? numbering.block_of(sorted[e][0]) : numbering.blocks() - 1;
+        const int block =
+            numbering.is_free(sorted[e][0]) ? numbering.block_of(sorted[e][0]) : numbering.first_blocks() - 1;
         elements[static_cast<std::size_t>(block)].push_back(static_cast<std::int32_t>(e));
     }
     for (std::vector<std::int32_t>& block : elements) {
@@ -34,6 +35,42 @@ std::vector<std::vector<std::int32_t>> elements_of_blocks(std::span<const Tetrah
                   [&](auto a, auto b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
     }
     return elements;
+}
+
+/// Everything of an element but its nodes and where it scatters; fraction 0: no element.
+template <class Real>
+void write_rest(ElementBatches<Real>& batches, std::size_t slot, const TetrahedronGeometry& geometry,
+                const ElasticParameters& material, double fraction) {
+    const auto lanes = static_cast<std::size_t>(batches.width);
+    const double volume = fraction * geometry.volume;
+    Real* rest = &batches.rest[slot / lanes * ElementBatches<Real>::rest_entries * lanes + slot % lanes];
+    for (std::size_t entry = 0; entry < 9; ++entry) {
+        rest[entry * lanes] = static_cast<Real>(geometry.gradients[1 + entry / 3][entry % 3]);
+    }
+    rest[9 * lanes] = static_cast<Real>(std::sqrt(volume * material.mu));
+    rest[10 * lanes] = static_cast<Real>(material.lambda / material.mu);
+    batches.mass[slot] = static_cast<Real>(material.density * volume);
+}
+
+template <class Real>
+void write_pair_masses(ElementBatches<Real>& batches, std::size_t slot, const std::array<double, 6>& masses) {
+    if (batches.pair_mass.empty()) return;
+    const auto lanes = static_cast<std::size_t>(batches.width);
+    for (std::size_t pair = 0; pair < 6; ++pair) {
+        batches.pair_mass[(slot / lanes * 6 + pair) * lanes + slot % lanes] = static_cast<Real>(masses[pair]);
+    }
+}
+
+template <class Real>
+std::size_t corner_place(const ElementBatches<Real>& batches, std::int32_t slot, std::size_t corner) {
+    const auto lanes = static_cast<std::size_t>(batches.width), at = static_cast<std::size_t>(slot);
+    return (at / lanes * 4 + corner) * lanes + at % lanes;
+}
+
+template <class Real>
+int block_of_slot(const ElementBatches<Real>& batches, std::int32_t slot) {
+    const auto& begin = batches.block_batch_begin;
+    return static_cast<int>(std::upper_bound(begin.begin(), begin.end(), slot / batches.width) - begin.begin()) - 1;
 }
 
 }  // namespace
@@ -59,7 +96,8 @@ TetrahedronGeometry tetrahedron_geometry(std::span<const Point> positions, const
 template <class Real>
 std::size_t ElementBatches<Real>::bytes() const noexcept {
     return heap_bytes(block_batch_begin) + heap_bytes(nodes) + heap_bytes(targets) + heap_bytes(rest) +
-           heap_bytes(mass) + heap_bytes(pair_mass) + heap_bytes(slot_of_element) + scatter.bytes();
+           heap_bytes(mass) + heap_bytes(pair_mass) + heap_bytes(slot_of_element) + heap_bytes(free_slots) +
+           scatter.bytes();
 }
 
 template <class Real>
@@ -79,7 +117,10 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
         const int count = static_cast<int>((block.size() + lanes - 1) / lanes);
         batches.block_batch_begin.push_back(batches.block_batch_begin.back() + count);
     }
-    const auto total = static_cast<std::size_t>(batches.batches());
+    // A node of the room comes with the parts of some elements around it.
+    const int spare_elements = 8 * (numbering.free_count - numbering.spare_begin);
+    batches.capacity = batches.batches() + (spare_elements + width - 1) / width;
+    const auto total = static_cast<std::size_t>(batches.capacity);
     batches.nodes.resize(total * 4 * lanes);
     batches.targets.resize(total * 4 * lanes);
     batches.rest.resize((total + 1) * ElementBatches<Real>::rest_entries *
@@ -95,8 +136,6 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                 const bool is_padding = place >= elements[block].size();
                 const std::int32_t e = is_padding ? elements[block].front() : elements[block][place];
                 const TetrahedronGeometry geometry = tetrahedron_geometry(positions, tetrahedra[e]);
-                const double volume = fractions.empty() ? geometry.volume : fractions[e] * geometry.volume;
-                const ElasticParameters& material = parameters[regions[e]];
                 if (!is_padding) batches.slot_of_element[e] = static_cast<std::int32_t>(batch * lanes + lane);
                 for (std::size_t corner = 0; corner < 4; ++corner) {
                     const std::int32_t node = numbering.internal_of_user[tetrahedra[e][corner]];
@@ -105,14 +144,10 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
                         4 * (is_padding ? batches.scatter.unused(static_cast<int>(block))
                                         : batches.scatter.target(static_cast<int>(block), node));
                 }
-                Real* rest = &batches.rest[batch * ElementBatches<Real>::rest_entries * lanes + lane];
-                for (std::size_t entry = 0; entry < 9; ++entry) {
-                    rest[entry * lanes] = static_cast<Real>(geometry.gradients[1 + entry / 3][entry % 3]);
-                }
-                rest[9 * lanes] = is_padding ? Real(0) : static_cast<Real>(std::sqrt(volume * material.mu));
-                rest[10 * lanes] = static_cast<Real>(material.lambda / material.mu);
-                batches.mass[batch * lanes + lane] =
-                    is_padding ? Real(0) : static_cast<Real>(material.density * volume);
+                write_rest(batches, batch * lanes + lane, geometry, parameters[regions[e]],
+                           is_padding          ? 0
+                           : fractions.empty() ? 1
+                                               : fractions[e]);
             }
         }
     }
@@ -121,21 +156,87 @@ ElementBatches<Real> make_element_batches(std::span<const Point> positions, std:
 }
 
 template <class Real>
+std::int32_t take_slot(ElementBatches<Real>& batches, const ChangedElement& element) {
+    if (!batches.free_slots.empty()) {
+        const std::int32_t slot = batches.free_slots.back();
+        batches.free_slots.pop_back();
+        return slot;
+    }
+    if (batches.batches() == batches.capacity) return -1;
+    // A new batch: lanes without an element repeat this one, without weight.
+    const auto block = batches.block_batch_begin.size() - 2;
+    const std::int32_t first = batches.block_batch_begin.back()++ * batches.width;
+    for (std::int32_t slot = first; slot < first + batches.width; ++slot) {
+        clear_slot(batches, slot);
+        write_rest(batches, static_cast<std::size_t>(slot), element.geometry, element.material, 0);
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            batches.nodes[corner_place(batches, slot, corner)] = 4 * element.nodes[corner];
+            batches.targets[corner_place(batches, slot, corner)] =
+                4 * batches.scatter.unused_slot(static_cast<int>(block));
+        }
+    }
+    // clear_slot has given all of them back, in ascending order.
+    std::reverse(batches.free_slots.begin(), batches.free_slots.end());
+    batches.free_slots.pop_back();
+    return first;
+}
+
+template <class Real>
+bool set_element(ElementBatches<Real>& batches, const NodeNumbering& numbering, std::int32_t slot,
+                 const ChangedElement& element) {
+    const int block = block_of_slot(batches, slot);
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        const std::int32_t target = batches.scatter.changed_target(numbering, block, element.nodes[corner]);
+        if (target < 0) return false;
+        batches.nodes[corner_place(batches, slot, corner)] = 4 * element.nodes[corner];
+        batches.targets[corner_place(batches, slot, corner)] = 4 * target;
+    }
+    write_rest(batches, static_cast<std::size_t>(slot), element.geometry, element.material, element.fraction);
+    write_pair_masses(batches, static_cast<std::size_t>(slot), element.pair_masses);
+    return true;
+}
+
+template <class Real>
+void clear_slot(ElementBatches<Real>& batches, std::int32_t slot) {
+    const auto lanes = static_cast<std::size_t>(batches.width), at = static_cast<std::size_t>(slot);
+    const int block = block_of_slot(batches, slot);
+    batches.rest[(at / lanes * ElementBatches<Real>::rest_entries + 9) * lanes + at % lanes] = Real(0);
+    batches.mass[at] = Real(0);
+    write_pair_masses(batches, at, {});
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        batches.targets[corner_place(batches, slot, corner)] = 4 * batches.scatter.unused_slot(block);
+    }
+    if (block + 2 == static_cast<int>(batches.block_batch_begin.size())) batches.free_slots.push_back(slot);
+}
+
+template <class Real>
+Tetrahedron nodes_of_slot(const ElementBatches<Real>& batches, std::int32_t slot) {
+    Tetrahedron nodes{};
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        nodes[corner] = batches.nodes[corner_place(batches, slot, corner)] / 4;
+    }
+    return nodes;
+}
+
+template <class Real>
 void set_pair_masses(ElementBatches<Real>& batches, std::span<const std::array<double, 6>> of_element) {
-    const auto lanes = static_cast<std::size_t>(batches.width);
     batches.pair_mass.assign(static_cast<std::size_t>(batches.slots()) * 6, Real(0));
     for (std::size_t e = 0; e < of_element.size(); ++e) {
         if (batches.slot_of_element[e] < 0) continue;  // a body without free nodes has no batches
-        const auto slot = static_cast<std::size_t>(batches.slot_of_element[e]);
-        for (std::size_t pair = 0; pair < 6; ++pair) {
-            batches.pair_mass[(slot / lanes * 6 + pair) * lanes + slot % lanes] =
-                static_cast<Real>(of_element[e][pair]);
-        }
+        write_pair_masses(batches, static_cast<std::size_t>(batches.slot_of_element[e]), of_element[e]);
     }
 }
 
 template struct ElementBatches<float>;
+template std::int32_t take_slot<float>(ElementBatches<float>&, const ChangedElement&);
+template bool set_element<float>(ElementBatches<float>&, const NodeNumbering&, std::int32_t, const ChangedElement&);
+template void clear_slot<float>(ElementBatches<float>&, std::int32_t);
+template Tetrahedron nodes_of_slot<float>(const ElementBatches<float>&, std::int32_t);
 template struct ElementBatches<double>;
+template std::int32_t take_slot<double>(ElementBatches<double>&, const ChangedElement&);
+template bool set_element<double>(ElementBatches<double>&, const NodeNumbering&, std::int32_t, const ChangedElement&);
+template void clear_slot<double>(ElementBatches<double>&, std::int32_t);
+template Tetrahedron nodes_of_slot<double>(const ElementBatches<double>&, std::int32_t);
 template void set_pair_masses<float>(ElementBatches<float>&, std::span<const std::array<double, 6>>);
 template void set_pair_masses<double>(ElementBatches<double>&, std::span<const std::array<double, 6>>);
 template ElementBatches<float> make_element_batches<float>(std::span<const Point>, std::span<const Tetrahedron>,

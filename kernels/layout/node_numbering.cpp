@@ -8,6 +8,7 @@
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/kernels/layout/aligned_vector.hpp"
+#include "lancet/kernels/layout/spare_nodes.hpp"
 
 namespace lancet::kernels {
 
@@ -88,6 +89,18 @@ void append(NodeNumbering& numbering, Indices nodes) {
     while (numbering.user_of_internal.size() % NodeNumbering::alignment != 0) numbering.user_of_internal.push_back(-1);
 }
 
+/// One block more, without a node yet, and the aggregates that it may come to.
+void add_room(NodeNumbering& numbering, int nodes) {
+    const auto first = static_cast<std::int32_t>(numbering.user_of_internal.size());
+    const int aggregates = divide_rounding_up(static_cast<std::size_t>(nodes), SpareNodes::nodes_per_aggregate);
+    for (int k = 1; k <= aggregates; ++k) {
+        numbering.aggregate_begin.push_back(first + k * SpareNodes::nodes_per_aggregate);
+    }
+    numbering.user_of_internal.resize(static_cast<std::size_t>(numbering.aggregate_begin.back()), -1);
+    numbering.block_begin.push_back(first);
+    numbering.block_aggregate_begin.push_back(numbering.block_aggregate_begin.back());
+}
+
 }  // namespace
 
 int NodeNumbering::block_of(std::int32_t node) const noexcept {
@@ -154,10 +167,19 @@ NodeNumbering number_nodes(std::span<const Point> positions, std::span<const Tet
         numbering.block_begin.push_back(static_cast<std::int32_t>(numbering.user_of_internal.size()));
         numbering.block_aggregate_begin.push_back(static_cast<std::int32_t>(numbering.aggregate_begin.size()));
     }
+    numbering.spare_begin = static_cast<std::int32_t>(numbering.user_of_internal.size());
+    numbering.aggregate_begin.push_back(numbering.spare_begin);
+    if (options.spare_nodes > 0 && !free_nodes.empty()) add_room(numbering, options.spare_nodes);
     numbering.free_count = static_cast<std::int32_t>(numbering.user_of_internal.size());
-    numbering.aggregate_begin.push_back(numbering.free_count);
     std::sort(fixed_nodes.begin(), fixed_nodes.end(), [&](auto a, auto b) { return rank[a] < rank[b]; });
     append(numbering, fixed_nodes);
+    if (numbering.has_room() && !fixed_nodes.empty()) {
+        const int spare =
+            std::min(options.spare_nodes, static_cast<int>(fixed_nodes.size()) + NodeNumbering::alignment);
+        const auto size = numbering.user_of_internal.size() + static_cast<std::size_t>(spare);
+        numbering.user_of_internal.resize(
+            (size + NodeNumbering::alignment - 1) / NodeNumbering::alignment * NodeNumbering::alignment, -1);
+    }
     numbering.node_count = static_cast<std::int32_t>(numbering.user_of_internal.size());
     return numbering;
 }

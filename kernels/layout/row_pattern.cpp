@@ -105,6 +105,30 @@ void spread_lanes(std::vector<std::int32_t>& rows, const std::vector<std::int32_
     }
 }
 
+/// The chunks of the room, without a row: some for each of its nodes, and some for edges of others that get more
+/// elements than their places in the pattern hold.
+void add_room(RowPattern& pattern, const NodeNumbering& numbering, std::int32_t nothing) {
+    constexpr int rows_per_node = 5, entries = 4, incidences = 6;
+    const int chunks =
+        (rows_per_node * (numbering.free_count - numbering.spare_begin) + pattern.width - 1) / pattern.width;
+    const std::int32_t unused = pattern.scatter.unused(numbering.first_blocks());
+    const auto append = [&](AlignedVector<std::int32_t>& numbers, std::int32_t number, int chunk_numbers) {
+        numbers.insert(numbers.end(), static_cast<std::size_t>(chunks * chunk_numbers * pattern.width), number);
+    };
+    pattern.room_begin = {pattern.block_chunk_begin.back()};
+    append(pattern.row, 4 * numbering.spare_begin, 1);
+    append(pattern.row_target, 4 * unused, 1);
+    append(pattern.column, 4 * numbering.spare_begin, entries);
+    append(pattern.column_target, 4 * unused, entries);
+    append(pattern.incidence, 4 * nothing, 2 * entries * incidences);
+    for (int entry = 0; entry < chunks * entries; ++entry) {
+        pattern.incidence_begin.push_back(pattern.incidence_begin.back() + incidences);
+        if ((entry + 1) % entries == 0) {
+            pattern.chunk_entry_begin.push_back(static_cast<std::int32_t>(pattern.incidence_begin.size()) - 1);
+        }
+    }
+}
+
 }  // namespace
 
 std::size_t RowPattern::bytes() const noexcept {
@@ -119,6 +143,7 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
     RowPattern pattern;
     pattern.width = width;
     pattern.content = content;
+    pattern.slots = slots;
     pattern.scatter = ScatterPlan(strategy, numbering);
     const auto lanes = static_cast<std::size_t>(width);
     const bool is_half = content == RowContent::upper_edges;
@@ -194,6 +219,7 @@ RowPattern make_row_pattern(RowContent content, std::span<const Tetrahedron> tet
         }
         pattern.block_chunk_begin.push_back(static_cast<std::int32_t>(pattern.chunk_entry_begin.size()) - 1);
     }
+    if (numbering.has_room() && is_half) add_room(pattern, numbering, nothing);
     pattern.scatter.finish();
     pattern.row.shrink_to_fit();
     pattern.row_target.shrink_to_fit();

@@ -32,11 +32,17 @@ struct RowPattern {
     std::vector<std::int32_t> incidence_begin;  ///< first incidence of each entry, and the end
     AlignedVector<std::int32_t> incidence;      ///< [incidence][2][lane] 4 * (4 * slot + corner) of the row's and the
                                                 ///< column's node; 16 * slots stands for 'nothing'
+    std::int32_t slots = 0;                     ///< of the element batches
     ScatterPlan scatter;                        ///< upper_edges only
     std::int64_t blocks_stored = 0;             ///< 3 x 3 blocks without padding
+    /// With room (see NodeNumbering), upper_edges only, else empty: the first chunk of the last block. Its chunks hold
+    /// no row yet, and come into use one by one, up to block_chunk_begin.back(). Their rows may be of any node.
+    std::vector<std::int32_t> room_begin{};
 
     int chunks() const noexcept { return block_chunk_begin.back(); }
     int entries() const noexcept { return chunk_entry_begin.back(); }
+    /// The incidence that stands for nothing.
+    std::int32_t nothing() const noexcept { return 16 * slots; }
     std::size_t bytes() const noexcept;
 };
 

@@ -1,6 +1,7 @@
 #include "lancet/kernels/layout/scatter_plan.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <tuple>
 
@@ -39,11 +40,22 @@ ScatterPlan::ScatterPlan(ScatterStrategy strategy, const NodeNumbering& numberin
 
 void ScatterPlan::open(int block) {
     while (open_block_ < block) {
-        if (open_block_ >= 0) slot_begin_.push_back(next_slot_);
+        if (open_block_ >= 0) close();
         ++open_block_;
         copies_.clear();
         new_slot();  // the slot that nobody reads is the first of the block
     }
+}
+
+void ScatterPlan::close() {
+    if (numbering_->has_room()) {
+        // Foreign nodes that come later: for a block those of the room beside it, for the room all that border on it.
+        const std::int32_t spare = numbering_->free_count - numbering_->spare_begin;
+        const std::int32_t own = numbering_->block_begin[open_block_ + 1] - numbering_->block_begin[open_block_];
+        room_begin_.push_back(next_slot_);
+        next_slot_ += open_block_ < numbering_->first_blocks() ? std::min(spare, own / 2 + 32) : 4 * spare + 64;
+    }
+    slot_begin_.push_back(next_slot_);
 }
 
 std::int32_t ScatterPlan::unused(int block) {
@@ -75,8 +87,12 @@ std::int32_t ScatterPlan::target(int block, std::int32_t node) {
 
 void ScatterPlan::finish() {
     const int blocks = numbering_->blocks();
-    if (blocks > 0) open(blocks - 1);
-    slot_begin_.push_back(next_slot_);
+    if (blocks > 0) {
+        open(blocks - 1);
+        close();
+    } else {
+        slot_begin_.push_back(next_slot_);
+    }
     copies_ = {};
 
     merge_begin_.push_back(0);
@@ -128,8 +144,48 @@ void ScatterPlan::finish() {
     foreign_ = {};
 }
 
+std::int32_t ScatterPlan::changed_target(const NodeNumbering& numbering, int block, std::int32_t node) {
+    const auto of_block = static_cast<std::size_t>(block);
+    if (!numbering.is_free(node)) return unused_slot(block);
+    const auto owner = static_cast<std::size_t>(numbering.block_of(node));
+    if (owner == of_block) return node;
+    const Merge first{node, slot_begin_[of_block]};
+    const auto is_before = [](const Merge& a, const Merge& b) {
+        return std::tie(a.node, a.slot) < std::tie(b.node, b.slot);
+    };
+    const auto is_found = [&](auto place, auto end) {
+        return place != end && place->node == node && place->slot < slot_begin_[of_block + 1];
+    };
+    const auto end = merges_.begin() + merge_begin_[owner + 1];
+    const auto known = std::lower_bound(merges_.begin() + merge_begin_[owner], end, first, is_before);
+    if (is_found(known, end)) return known->slot;
+    changes_.resize(merge_begin_.size() - 1);
+    std::vector<Merge>& changes = changes_[owner];
+    const auto change = std::lower_bound(changes.begin(), changes.end(), first, is_before);
+    if (is_found(change, changes.end())) return change->slot;
+    if (room_begin_.empty() || room_begin_[of_block] == slot_begin_[of_block + 1]) return -1;
+    const std::int32_t slot = room_begin_[of_block]++;
+    changes.insert(change, {node, slot});
+    return slot;
+}
+
+void ScatterPlan::finish_changes() {
+    if (std::all_of(changes_.begin(), changes_.end(), [](const auto& changes) { return changes.empty(); })) return;
+    std::vector<Merge> merges;
+    std::vector<std::int32_t> begin{0};
+    for (std::size_t owner = 0; owner < changes_.size(); ++owner) {
+        std::merge(merges_.begin() + merge_begin_[owner], merges_.begin() + merge_begin_[owner + 1],
+                   changes_[owner].begin(), changes_[owner].end(), std::back_inserter(merges),
+                   [](const Merge& a, const Merge& b) { return std::tie(a.node, a.slot) < std::tie(b.node, b.slot); });
+        begin.push_back(static_cast<std::int32_t>(merges.size()));
+        changes_[owner].clear();
+    }
+    merges_ = std::move(merges);
+    merge_begin_ = std::move(begin);
+}
+
 std::size_t ScatterPlan::bytes() const noexcept {
-    return heap_bytes(slot_begin_) + heap_bytes(merge_begin_) + heap_bytes(merges_);
+    return heap_bytes(slot_begin_) + heap_bytes(merge_begin_) + heap_bytes(merges_) + heap_bytes(room_begin_);
 }
 
 }  // namespace lancet::kernels

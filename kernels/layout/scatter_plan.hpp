@@ -41,6 +41,12 @@ class ScatterPlan {
     std::int32_t unused(int block);
     void finish();
 
+    /// The same for a plan that has been finished, with room (see NodeNumbering) and private copies. -1: there is no
+    /// room. Before the plan is used, call finish_changes.
+    std::int32_t changed_target(const NodeNumbering& numbering, int block, std::int32_t node);
+    std::int32_t unused_slot(int block) const noexcept { return slot_begin_[static_cast<std::size_t>(block)]; }
+    void finish_changes();
+
     ScatterStrategy strategy() const noexcept { return strategy_; }
     /// Nodes and slots of the buffer.
     std::int32_t buffer_size() const noexcept { return next_slot_; }
@@ -55,6 +61,7 @@ class ScatterPlan {
 
   private:
     void open(int block);
+    void close();
     std::int32_t new_slot() { return next_slot_++; }
 
     ScatterStrategy strategy_ = ScatterStrategy::private_copies;
@@ -68,6 +75,8 @@ class ScatterPlan {
     std::vector<std::int32_t> merge_begin_;
     std::vector<Merge> merges_;
     std::vector<std::vector<std::int32_t>> colors_;
+    std::vector<std::int32_t> room_begin_;     ///< the first slot of each block that nobody uses; empty without room
+    std::vector<std::vector<Merge>> changes_;  ///< new merges of each block, by node, then slot
 };
 
 }  // namespace lancet::kernels

@@ -84,6 +84,7 @@ CutReport CutMesh::cut(const CutSurface& surface, FrontTreatment front, std::spa
     for (const std::int32_t node : nodes) regroup_copies(node);
     change.report.seconds_topology = seconds_since(start_topology);
 
+    change.report.elements.assign(change.elements.begin(), change.elements.end());
     change.report.touched_elements = static_cast<std::int32_t>(change.elements.size());
     change.report.new_parts = static_cast<std::int32_t>(parts_.size() - parts_before);
     change.report.new_copies = static_cast<std::int32_t>(node_of_copy_.size() - copies_before);

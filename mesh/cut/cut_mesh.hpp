@@ -35,8 +35,9 @@ struct CutReport {
     std::int32_t divided_elements = 0;  ///< that have more parts than before
     std::int32_t new_parts = 0;
     std::int32_t new_copies = 0;
-    double seconds_geometry = 0;  ///< clipping
-    double seconds_topology = 0;  ///< parts and copies
+    std::vector<std::int32_t> elements{};  ///< that were touched, ascending
+    double seconds_geometry = 0;           ///< clipping
+    double seconds_topology = 0;           ///< parts and copies
 };
 
 /// A mesh with cuts: what is separated, and what still hangs together.

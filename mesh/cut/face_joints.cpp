@@ -49,7 +49,7 @@ class Side {
         Polygon face{.plane = face_plane};
         for (int k = 0; k < 3; ++k) {
             // Corner k lies between the edges opposite the corners before and behind it.
-            face.points.push_back(pool_.add_point({face_plane, (k + 1) % 3, (k + 2) % 3}));
+            face.points.push_back(pool_.find_or_add_point({face_plane, (k + 1) % 3, (k + 2) % 3}));
             face.edges.push_back({(k + 2) % 3, 1});
         }
         return face;
@@ -70,8 +70,8 @@ class Side {
         const std::size_t count = original.points.size();
         for (const HalfSpace& edge : original.edges) polygon.edges.push_back({trace(edge.plane), edge.side});
         for (std::size_t k = 0; k < count; ++k) {
-            polygon.points.push_back(
-                pool_.add_point({face_plane, polygon.edges[(k + count - 1) % count].plane, polygon.edges[k].plane}));
+            polygon.points.push_back(pool_.find_or_add_point(
+                {face_plane, polygon.edges[(k + count - 1) % count].plane, polygon.edges[k].plane}));
         }
         return polygon;
     }

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "lancet/kernels/error.hpp"
-#include "lancet/mesh/cut/front_opening.hpp"
 
 namespace lancet::mesh {
 
@@ -39,6 +38,22 @@ std::string_view to_string(Fronts fronts) noexcept {
     return fronts == Fronts::blended ? "blended" : "sharp";
 }
 
+std::vector<Lanes::Lane> lanes_of_element(const CutMesh& cut, std::int32_t element,
+                                          const std::vector<FrontOpening::Piece>* pieces) {
+    if (pieces == nullptr && cut.cells(element) == nullptr) {
+        return {{element, cut.parts()[static_cast<std::size_t>(element)], PartMoments{}}};
+    }
+    ElementLanes lanes(element);
+    if (pieces != nullptr) {
+        for (const FrontOpening::Piece& piece : *pieces) lanes.add(piece.copies, piece.moments, piece.weight);
+    } else {
+        for (const std::int32_t part : cut.parts_of_element(element)) {
+            lanes.add(cut.parts()[static_cast<std::size_t>(part)], cut.moments(part));
+        }
+    }
+    return lanes.take();
+}
+
 Lanes lanes(const CutMesh& cut, Fronts fronts) {
     Lanes result;
     result.node_of_copy.assign(cut.node_of_copy().begin(), cut.node_of_copy().end());
@@ -56,20 +71,8 @@ Lanes lanes(const CutMesh& cut, Fronts fronts) {
     for (std::size_t e = 0; e < elements; ++e) {
         const auto element = static_cast<std::int32_t>(e);
         const auto pieces = opening.find(element);
-        if (pieces == opening.end() && cut.cells(element) == nullptr) {
-            result.lanes.push_back({element, cut.parts()[e], PartMoments{}});
-            continue;
-        }
-        ElementLanes of_element(element);
-        if (pieces != opening.end()) {
-            for (const FrontOpening::Piece& piece : pieces->second)
-                of_element.add(piece.copies, piece.moments, piece.weight);
-        } else {
-            for (const std::int32_t part : cut.parts_of_element(element)) {
-                of_element.add(cut.parts()[static_cast<std::size_t>(part)], cut.moments(part));
-            }
-        }
-        std::vector<Lanes::Lane> list = of_element.take();
+        std::vector<Lanes::Lane> list =
+            lanes_of_element(cut, element, pieces == opening.end() ? nullptr : &pieces->second);
         result.lanes.push_back(list.front());
         further.insert(further.end(), list.begin() + 1, list.end());
     }

@@ -15,6 +15,8 @@ struct PartMoments {
     std::array<double, 4> first{0.25, 0.25, 0.25, 0.25};
     std::array<std::array<double, 4>, 4> second{
         {{0.1, 0.05, 0.05, 0.05}, {0.05, 0.1, 0.05, 0.05}, {0.05, 0.05, 0.1, 0.05}, {0.05, 0.05, 0.05, 0.1}}};
+
+    bool operator==(const PartMoments&) const = default;
 };
 
 /// A point of a tetrahedron by its barycentric coordinates (lambda_0, ..., lambda_3), which add up to one.

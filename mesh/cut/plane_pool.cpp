@@ -54,6 +54,11 @@ int PlanePool::add_trace(const PlanePool& other, int plane, const std::array<int
         trace.is_kept[k] = original.is_kept[corner];
         trace.values[k] = original.values[corner];
     }
+    const auto same = std::ranges::find_if(planes_, [&](const StoredPlane& known) {
+        return trace.source != nullptr && known.source == trace.source && known.corners == trace.corners &&
+               known.is_kept == trace.is_kept;
+    });
+    if (same != planes_.end()) return static_cast<int>(same - planes_.begin());
     planes_.push_back(trace);
     return planes() - 1;
 }
@@ -83,6 +88,12 @@ const std::array<Exact, 4>& PlanePool::exact_weights(const StoredPoint& point) c
     }
     point.exact = std::make_shared<const std::array<Exact, 4>>(std::move(weights));
     return *point.exact;
+}
+
+int PlanePool::find_or_add_point(const std::array<int, 3>& planes) {
+    const auto same = std::ranges::find_if(
+        points_, [&](const StoredPoint& point) { return std::ranges::is_permutation(point.planes, planes); });
+    return same != points_.end() ? static_cast<int>(same - points_.begin()) : add_point(planes);
 }
 
 int PlanePool::add_point(const std::array<int, 3>& planes) {

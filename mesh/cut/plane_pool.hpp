@@ -25,9 +25,13 @@ class PlanePool {
     /// The plane of a function that has exactly these values at the corners. Returns its number.
     int add_values(const std::array<double, 4>& values);
     /// The trace of a plane of another pool on the face with the corners `face` there: its values at these three become
-    /// those at corners 0, 1, 2, and that at corner 3 is zero. Returns its number.
+    /// those at corners 0, 1, 2, and that at corner 3 is zero. Returns its number, or that of a trace which is there
+    /// already: both elements of a face have those of the cuts that run through it, and what lies on them is then known
+    /// without arithmetic.
     int add_trace(const PlanePool& other, int plane, const std::array<int, 3>& face);
     /// The point in which three planes meet, which must exist and lie in the tetrahedron. Returns its number.
+    /// `find_or_add_point` looks whether it is there already, among all points.
+    int find_or_add_point(const std::array<int, 3>& planes);
     int add_point(const std::array<int, 3>& planes);
 
     int planes() const noexcept { return static_cast<int>(planes_.size()); }

@@ -1,69 +1,26 @@
 #include "lancet/runtime/cut/cuttable_body.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/runtime/cut/divided_scene.hpp"
 #include "lancet/runtime/observe/clock.hpp"
-#include "lancet/runtime/simulate/loads.hpp"
 
 namespace lancet::runtime {
 
 namespace {
 
-/// The motion of a body by its nodes.
-struct Motion {
-    std::vector<Point> positions, velocities;
-    std::vector<double> masses;
-
-    explicit Motion(const DeformableBody& body) : positions(body.nodes()), velocities(body.nodes()) {
-        body.positions(positions);
-        body.velocities(velocities);
-        for (std::size_t node = 0; node < body.nodes(); ++node) {
-            masses.push_back(body.nodal_mass(static_cast<std::int32_t>(node)));
-        }
+std::vector<bool> held_nodes(const Scene& scene) {
+    validate_constraints(scene);
+    std::vector<bool> is_held(scene.mesh.nodes().size(), false);
+    for (const std::int32_t node : scene.fixed_nodes) is_held[static_cast<std::size_t>(node)] = true;
+    for (const PrescribedDisplacement& prescribed : scene.prescribed) {
+        is_held[static_cast<std::size_t>(prescribed.node)] = true;
     }
-};
-
-/// The copy that was opening from each copy, if any: its number in the body.
-std::map<std::int32_t, std::size_t> far_copies(const mesh::CutMesh& mesh, std::span<const std::int32_t> opened_from) {
-    std::map<std::int32_t, std::size_t> far;
-    for (std::size_t k = 0; k < opened_from.size(); ++k) far[opened_from[k]] = mesh.node_of_copy().size() + k;
-    return far;
-}
-
-/// Sets a body going where another was before a cut; copies are numbered as in the meshes before and after.
-void take_over(const Motion& before, const mesh::CutMesh& mesh_before, std::span<const std::int32_t> opened_before,
-               const mesh::CutMesh& mesh, std::span<const std::int32_t> opened_from, DeformableBody& body) {
-    const auto far_before = far_copies(mesh_before, opened_before);
-    const std::size_t copies_before = mesh_before.node_of_copy().size(), copies = mesh.node_of_copy().size();
-    std::vector<Point> positions(body.nodes()), velocities(body.nodes());
-    // A parent has a lower number: its values are there before those of its copy are asked for.
-    for (std::size_t node = 0; node < body.nodes(); ++node) {
-        if (node < copies_before) {
-            positions[node] = before.positions[node];
-            velocities[node] = before.velocities[node];
-            continue;
-        }
-        const auto parent =
-            static_cast<std::size_t>(node < copies ? mesh.parent_of_copy()[node] : opened_from[node - copies]);
-        positions[node] = positions[parent];
-        velocities[node] = velocities[parent];
-        const auto far = far_before.find(static_cast<std::int32_t>(parent));
-        if (far == far_before.end()) continue;
-        // What has come over since brings the parent's velocity.
-        positions[node] = before.positions[far->second];
-        const double mass = body.nodal_mass(static_cast<std::int32_t>(node));
-        const double kept = mass > 0 ? std::min(1.0, before.masses[far->second] / mass) : 1.0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            velocities[node][axis] =
-                kept * before.velocities[far->second][axis] + (1 - kept) * velocities[parent][axis];
-        }
-    }
-    body.set_positions(positions);
-    body.set_velocities(velocities);
+    return is_held;
 }
 
 }  // namespace
@@ -73,38 +30,70 @@ CuttableBody::CuttableBody(Scene scene, const Settings& settings, Scheduler& sch
       settings_(settings),
       options_(options),
       mesh_(scene_.mesh),
-      body_(make_body(scene_, settings, scheduler)),
-      scene_loads_(external_loads(scene_)) {}
+      inertia_(scene_, mass_kind(settings)),
+      scene_loads_(scene_, mesh_),
+      elements_(mesh_, options.fronts),
+      components_(mesh_, elements_, held_nodes(scene_)) {
+    if (!(options.room >= 0 && options.room <= 1)) {
+        throw Error("cuts: room " + std::to_string(options.room) + "; expected a share from 0 to 1");
+    }
+    is_fixed_.assign(scene_.mesh.nodes().size(), false);
+    for (const std::int32_t node : scene_.fixed_nodes) is_fixed_[static_cast<std::size_t>(node)] = true;
+    body_ = make_body(scene_, settings_with_room(mesh_.node_of_copy().size()), scheduler);
+}
+
+bool CuttableBody::can_change() const {
+    const bool has_fitting_layout = settings_.scatter == kernels::ScatterStrategy::private_copies &&
+                                    (is_explicit(settings_.integrator) || settings_.matrix != OperatorKind::block_rows);
+    const bool keeps_step = !is_explicit(settings_.integrator) || settings_.force_time_step;
+    return options_.room > 0 && options_.fronts == mesh::Fronts::sharp && options_.smallest_fraction == 0 &&
+           options_.crumbs != CrumbTreatment::drop && has_fitting_layout && keeps_step;
+}
+
+Settings CuttableBody::settings_with_room(std::size_t nodes) const {
+    Settings settings = settings_;
+    constexpr int least = 64;  // of a small body a cut touches a larger share
+    if (can_change()) {
+        settings.numbering.spare_nodes = std::max(least, static_cast<int>(options_.room * static_cast<double>(nodes)));
+    }
+    return settings;
+}
 
 CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surface, Configuration configuration,
                             mesh::FrontTreatment front) {
-    const Motion before(*body_);
-    mesh::CutMesh mesh = mesh_;
+    std::vector<Point> positions;
+    if (configuration == Configuration::current) {
+        positions.resize(body_->nodes());
+        body_->positions(positions);
+        positions.resize(mesh_.node_of_copy().size());
+    }
+    // A body that is laid out anew may refuse its time step, and with it the cut.
+    std::optional<mesh::CutMesh> apart;
+    if (!can_change()) apart = mesh_;
+    mesh::CutMesh& mesh = apart ? *apart : mesh_;
+    const std::vector<std::int32_t> opened_before = elements_.opened_from();
+    const BodyBeforeCut before{.body = body_.get(),
+                               .copies = static_cast<std::int32_t>(mesh.node_of_copy().size()),
+                               .opened_from = opened_before};
     CutUpdate update;
-    update.mesh =
-        mesh.cut(surface, front,
-                 configuration == Configuration::current ? std::span(before.positions).first(mesh.node_of_copy().size())
-                                                         : std::span<const Point>());
+    update.mesh = mesh.cut(surface, front, positions);
     const bool moves_front = options_.fronts == mesh::Fronts::blended && update.mesh.touched_elements > 0;
     if (update.mesh.new_parts == 0 && update.mesh.new_copies == 0 && !moves_front) {
-        mesh_ = std::move(mesh);
+        if (apart) mesh_ = *std::move(apart);
         return update;
     }
     const double start = steady_seconds();
-    std::vector<std::int32_t> opened_from;
-    Scene scene = divided(scene_, mesh, options_.fronts, &opened_from, options_.smallest_fraction);
-    update.crumbs = crumbs(scene, options_.largest_crumb);
-    if (options_.crumbs == CrumbTreatment::drop) take_weight(scene, update.crumbs);
-    std::vector<Point> loads = external_loads(scene);
-    auto body = make_body(scene, settings_, scheduler);
-    body->set_time(body_->time());
-    take_over(before, mesh_, opened_from_, mesh, opened_from, *body);
-
-    mesh_ = std::move(mesh);
-    opened_from_ = std::move(opened_from);
+    if (apart) {
+        rebuild(scheduler, mesh, before, update);
+        mesh_ = *std::move(apart);
+    } else {
+        const auto lanes = elements_.update(mesh_, update.mesh.elements, before.copies);
+        components_.update(mesh_, elements_);
+        scene_loads_.update(mesh_, elements_.changed_elements());
+        if (!body_->change(body_change(lanes, before))) rebuild(scheduler, mesh_, before, update);
+        update.crumbs = components_.crumbs(mesh_, elements_, options_.largest_crumb);
+    }
     blend_ = mesh::FrontBlend(mesh_, options_.fronts);
-    body_ = std::move(body);
-    scene_loads_ = std::move(loads);
     apply_loads();
     for (const auto& [node, target] : holds_) {
         for (const std::int32_t copy : copies_of_node(node)) body_->hold(copy, target);
@@ -112,6 +101,78 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
     if (options_.crumbs != CrumbTreatment::keep) stop(update.crumbs);
     update.seconds_update = steady_seconds() - start;
     return update;
+}
+
+BodyChange CuttableBody::body_change(std::span<const DividedElements::Change> lanes,
+                                     const BodyBeforeCut& before) const {
+    BodyChange change{.first_node = before.copies};
+    for (const DividedElements::Change& lane : lanes) {
+        change.elements.push_back(inertia_.element(mesh_, elements_, lane));
+    }
+    for (const CopyName name : elements_.changed_copies()) {
+        if (elements_.node_of(mesh_, name) < 0) continue;
+        change.masses.push_back(inertia_.nodal_mass(mesh_, elements_, name));
+    }
+    std::ranges::sort(change.masses, {}, &BodyChange::NodalMass::node);
+    const auto mass_after = [&](std::int32_t node) {
+        const auto found = std::ranges::lower_bound(change.masses, node, {}, &BodyChange::NodalMass::node);
+        if (found != change.masses.end() && found->node == node) return found->mass;
+        // What has not changed was opening before, or is of no element.
+        const auto copies = static_cast<std::int32_t>(mesh_.node_of_copy().size());
+        const std::int32_t old =
+            node < copies ? -1 : before.opening_from(elements_.opened_from()[static_cast<std::size_t>(node - copies)]);
+        return old < 0 ? 0.0 : body_->nodal_mass(old);
+    };
+    const auto copies = mesh_.node_of_copy().size();
+    std::int32_t number = before.copies;
+    for (const DeformableBody::NodeMotion& motion :
+         motion_after_cut(before, mesh_, elements_.opened_from(), mass_after)) {
+        const auto at = static_cast<std::size_t>(number++);
+        const std::int32_t parent = at < copies ? -1 : elements_.opened_from()[at - copies];
+        const std::int32_t node = mesh_.node_of_copy()[at < copies ? at : static_cast<std::size_t>(parent)];
+        const auto& rest = scene_.mesh.nodes()[static_cast<std::size_t>(node)];
+        const std::int32_t old = parent < 0 ? -1 : before.opening_from(parent);
+        change.nodes.push_back({.before = old,
+                                .rest = rest,
+                                .is_fixed = is_fixed_[static_cast<std::size_t>(node)],
+                                .position = motion.position,
+                                .velocity = motion.velocity});
+        if (old >= 0) continue;
+        for (const PrescribedDisplacement& prescribed : scene_.prescribed) {
+            if (prescribed.node != node) continue;
+            change.prescribed.push_back({static_cast<std::int32_t>(at), prescribed.axis, prescribed.displacement});
+        }
+    }
+    return change;
+}
+
+void CuttableBody::rebuild(Scheduler& scheduler, const mesh::CutMesh& mesh, const BodyBeforeCut& before,
+                           CutUpdate& update) {
+    update.rebuilt = true;
+    DividedElements elements(mesh, options_.fronts);
+    Scene scene = divided(scene_, mesh, options_.fronts, nullptr, options_.smallest_fraction);
+    if (!can_change()) {
+        update.crumbs = crumbs(scene, options_.largest_crumb);
+        if (options_.crumbs == CrumbTreatment::drop) take_weight(scene, update.crumbs);
+        scene_loads_ = DividedLoads(scene_, mesh);
+    }
+    auto body = make_body(scene, settings_with_room(scene.mesh.nodes().size()), scheduler);
+    body->set_time(body_->time());
+    std::vector<Point> positions(body_->nodes()), velocities(body_->nodes());
+    body_->positions(positions);
+    body_->velocities(velocities);
+    positions.resize(static_cast<std::size_t>(before.copies));
+    velocities.resize(positions.size());
+    for (const DeformableBody::NodeMotion& motion :
+         motion_after_cut(before, mesh, elements.opened_from(), [&](auto node) { return body->nodal_mass(node); })) {
+        positions.push_back(motion.position);
+        velocities.push_back(motion.velocity);
+    }
+    body->set_positions(positions);
+    body->set_velocities(velocities);
+    elements_ = std::move(elements);
+    body_ = std::move(body);
+    has_loads_ = true;
 }
 
 void CuttableBody::stop(std::span<const Crumb> crumbs) {
@@ -124,8 +185,9 @@ void CuttableBody::stop(std::span<const Crumb> crumbs) {
 
 std::vector<std::int32_t> CuttableBody::copies_of_node(std::int32_t node) const {
     std::vector<std::int32_t> copies = mesh_.copies_of_node(node);
-    for (std::size_t k = 0; k < opened_from_.size(); ++k) {
-        if (mesh_.node_of_copy()[static_cast<std::size_t>(opened_from_[k])] == node) {
+    const std::vector<std::int32_t>& opened_from = elements_.opened_from();
+    for (std::size_t k = 0; k < opened_from.size(); ++k) {
+        if (mesh_.node_of_copy()[static_cast<std::size_t>(opened_from[k])] == node) {
             copies.push_back(static_cast<std::int32_t>(mesh_.node_of_copy().size() + k));
         }
     }
@@ -158,7 +220,12 @@ void CuttableBody::set_point_loads(std::span<const PointLoad> loads) {
 }
 
 std::vector<Point> CuttableBody::loads() const {
-    std::vector<Point> loads = scene_loads_;
+    std::vector<Point> loads(body_->nodes(), Point{});
+    for (const NodalLoad& load : scene_loads_.on_copies()) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            loads[static_cast<std::size_t>(load.node)][axis] += load.force[axis];
+        }
+    }
     for (const PointLoad& load : point_loads_) {
         const mesh::CopyWeights hold = blend_.hold(mesh_, mesh_.material_point(load.element, load.place));
         for (std::size_t i = 0; i < static_cast<std::size_t>(hold.count); ++i) {
@@ -171,7 +238,10 @@ std::vector<Point> CuttableBody::loads() const {
 }
 
 void CuttableBody::apply_loads() {
-    body_->set_loads(loads());
+    // Without loads the body has none: new nodes come without.
+    const bool has_loads = !scene_loads_.empty() || !point_loads_.empty();
+    if (has_loads || has_loads_) body_->set_loads(loads());
+    has_loads_ = has_loads;
 }
 
 Point CuttableBody::position(std::int32_t element, const mesh::Barycentric& place) const {

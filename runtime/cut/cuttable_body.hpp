@@ -9,6 +9,11 @@
 #include "lancet/mesh/cut/front_blend.hpp"
 #include "lancet/mesh/cut/lanes.hpp"
 #include "lancet/runtime/cut/crumbs.hpp"
+#include "lancet/runtime/cut/divided_components.hpp"
+#include "lancet/runtime/cut/divided_elements.hpp"
+#include "lancet/runtime/cut/divided_inertia.hpp"
+#include "lancet/runtime/cut/divided_loads.hpp"
+#include "lancet/runtime/cut/motion_after_cut.hpp"
 #include "lancet/runtime/simulate/body.hpp"
 
 namespace lancet::runtime {
@@ -23,7 +28,8 @@ enum class Configuration {
 struct CutUpdate {
     mesh::CutReport mesh;
     std::vector<Crumb> crumbs{};  ///< all there are now, by nodes of the body
-    double seconds_update = 0;    ///< building the body anew around the new parts and copies
+    double seconds_update = 0;    ///< changing the body to the new parts and copies
+    bool rebuilt = false;         ///< the body was laid out anew as a whole (see CutOptions::room)
 };
 
 /// How cuts are treated.
@@ -33,6 +39,13 @@ struct CutOptions {
     double largest_crumb = 0.01;  ///< of the body's volume
     /// Parts of less of their element are taken as thick as this; see mesh::raise_fractions. Nothing needs it.
     double smallest_fraction = 0;
+    /// How many new nodes a cut body takes up before it is laid out anew, as a share of those that it has then. As long
+    /// as there is room, a cut changes the elements and nodes around it in place; its work is proportional to their
+    /// number. 0: every cut lays the body out anew, in time proportional to its size. So does every cut of a body with
+    /// blended fronts or a smallest fraction, with block rows, with a scatter strategy other than private copies, with
+    /// crumbs that are dropped, or with an explicit integrator whose critical step has to be found after each cut
+    /// (unless Settings::force_time_step).
+    double room = 0.1;
 };
 
 /// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated
@@ -56,7 +69,7 @@ class CuttableBody {
     const mesh::CutMesh& mesh() const noexcept { return mesh_; }
     /// Where points of the material are beside blended fronts.
     const mesh::FrontBlend& blend() const noexcept { return blend_; }
-    /// The body as it is now; the next cut replaces it. What is held or loaded through it is forgotten by then.
+    /// The body as it is now; the next cut changes or replaces it. What is held or loaded through it is forgotten then.
     DeformableBody& body() noexcept { return *body_; }
     const DeformableBody& body() const noexcept { return *body_; }
 
@@ -83,15 +96,24 @@ class CuttableBody {
     void apply_loads();
     void stop(std::span<const Crumb> crumbs);
     std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
+    /// True where cuts change the body in place as long as there is room.
+    bool can_change() const;
+    Settings settings_with_room(std::size_t nodes) const;
+    BodyChange body_change(std::span<const DividedElements::Change> lanes, const BodyBeforeCut& before) const;
+    void rebuild(Scheduler& scheduler, const mesh::CutMesh& mesh, const BodyBeforeCut& before, CutUpdate& update);
 
     Scene scene_;  ///< without cuts
     Settings settings_;
     CutOptions options_;
     mesh::CutMesh mesh_;
-    std::vector<std::int32_t> opened_from_;  ///< see mesh::Lanes
     mesh::FrontBlend blend_;
+    DividedInertia inertia_;
+    DividedLoads scene_loads_;
+    DividedElements elements_;
+    DividedComponents components_;
+    std::vector<bool> is_fixed_;  ///< [node of the mesh]
     std::unique_ptr<DeformableBody> body_;
-    std::vector<Point> scene_loads_;  ///< the scene's own, of each copy
+    bool has_loads_ = true;  ///< the body may have some
     std::map<std::int32_t, Point> holds_;
     std::vector<PointLoad> point_loads_;
 };

@@ -23,5 +23,7 @@ Scene divided(const Scene& scene, const mesh::CutMesh& cut, mesh::Fronts fronts 
 /// What thinner parts are taken as: 1e-20 of an element, far below the rounding of every sum that it enters, and thick
 /// enough that a float holds its stiffness.
 mesh::PartMoments smallest_moments();
+/// The moments of a part, or the smallest.
+mesh::PartMoments at_least_smallest(const mesh::PartMoments& moments);
 
 }  // namespace lancet::runtime

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace lancet::runtime {
 
@@ -23,16 +24,42 @@ ConsistentMass::ConsistentMass(const kernels::ElementBatches<Real>& batches,
             if (numbering.is_free(b)) rows[b][a] += mass;
         }
     }
-    begin_.push_back(0);
     for (const auto& row : rows) {
+        begin_.push_back(static_cast<std::int32_t>(column_.size()));
         for (const auto& [column, mass] : row) {
             column_.push_back(column);
             mass_.push_back(mass);
         }
-        begin_.push_back(static_cast<std::int32_t>(column_.size()));
+        end_.push_back(static_cast<std::int32_t>(column_.size()));
     }
     column_.shrink_to_fit();
     mass_.shrink_to_fit();
+}
+
+void ConsistentMass::set_row(std::int32_t node, std::span<const std::pair<std::int32_t, double>> row) {
+    const auto at = static_cast<std::size_t>(node);
+    unused_ += static_cast<std::size_t>(end_[at] - begin_[at]);
+    begin_[at] = static_cast<std::int32_t>(column_.size());
+    for (const auto& [column, mass] : row) {
+        column_.push_back(column);
+        mass_.push_back(mass);
+    }
+    end_[at] = static_cast<std::int32_t>(column_.size());
+}
+
+void ConsistentMass::compress() {
+    if (2 * unused_ < column_.size()) return;
+    std::vector<std::int32_t> columns;
+    std::vector<double> masses;
+    for (std::size_t node = 0; node < begin_.size(); ++node) {
+        const std::int32_t begin = std::exchange(begin_[node], static_cast<std::int32_t>(columns.size()));
+        columns.insert(columns.end(), column_.begin() + begin, column_.begin() + end_[node]);
+        masses.insert(masses.end(), mass_.begin() + begin, mass_.begin() + end_[node]);
+        end_[node] = static_cast<std::int32_t>(columns.size());
+    }
+    column_ = std::move(columns);
+    mass_ = std::move(masses);
+    unused_ = 0;
 }
 
 void ConsistentMass::solve(std::span<const double> row_sums, const kernels::NodeNumbering& numbering,
@@ -83,7 +110,7 @@ void ConsistentMass::solve(std::span<const double> row_sums, const kernels::Node
 
 std::size_t ConsistentMass::bytes() const noexcept {
     using kernels::heap_bytes;
-    return heap_bytes(begin_) + heap_bytes(column_) + heap_bytes(mass_);
+    return heap_bytes(begin_) + heap_bytes(end_) + heap_bytes(column_) + heap_bytes(mass_);
 }
 
 template ConsistentMass::ConsistentMass(const kernels::ElementBatches<float>&, std::span<const kernels::Tetrahedron>,

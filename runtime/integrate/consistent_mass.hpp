@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lancet/kernels/layout/element_batches.hpp"
@@ -23,13 +24,18 @@ class ConsistentMass {
 
     bool empty() const noexcept { return begin_.empty(); }
 
+    /// Replaces the row of a free node; its old one is not used any more, nor is its memory until compress.
+    void set_row(std::int32_t node, std::span<const std::pair<std::int32_t, double>> row);
+    /// Frees what is not used, once that is half of all.
+    void compress();
+
     /// sum_j m_ij (value(j) - value(node)) for a free node, where value(j) is a component of the nodal vector at node
     /// j.
     template <class Value>
     double off_diagonal(std::size_t node, const Value& value) const {
         const double own = value(node);
         double sum = 0;
-        for (std::int32_t k = begin_[node]; k < begin_[node + 1]; ++k) {
+        for (std::int32_t k = begin_[node]; k < end_[node]; ++k) {
             sum += mass_[k] * (value(static_cast<std::size_t>(column_[k])) - own);
         }
         return sum;
@@ -51,9 +57,11 @@ class ConsistentMass {
     std::size_t bytes() const noexcept;
 
   private:
-    std::vector<std::int32_t> begin_;   ///< first entry of each free node, and the end
+    std::vector<std::int32_t> begin_;   ///< first entry of each free node
+    std::vector<std::int32_t> end_;     ///< and their end
     std::vector<std::int32_t> column_;  ///< node of each entry, internal numbering
     std::vector<double> mass_;          ///< m_ij of each entry, kilograms
+    std::size_t unused_ = 0;            ///< entries of rows that have been replaced
 };
 
 }  // namespace lancet::runtime

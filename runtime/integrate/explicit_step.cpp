@@ -148,6 +148,13 @@ LargestEigenvalue ExplicitStep<Real>::largest_eigenvalue(Scheduler& scheduler, c
 }
 
 template <class Real>
+bool ExplicitStep<Real>::change(const LayoutChange& change) {
+    for (const LayoutChange::NodalMass& changed : change.masses) mass_[changed.node] = changed.mass;
+    forget();
+    return true;
+}
+
+template <class Real>
 std::size_t ExplicitStep<Real>::bytes() const noexcept {
     return kernels::heap_bytes(mass_) + kernels::heap_bytes(partial_);
 }

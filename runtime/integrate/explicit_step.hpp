@@ -31,6 +31,8 @@ class ExplicitStep final : public StepMethod<Real> {
                       std::span<Real> out) override;
     LargestEigenvalue largest_eigenvalue(Scheduler& scheduler, const double* position, double tolerance) override;
 
+    bool change(const LayoutChange& change) override;
+
     void forget() noexcept override { acceleration_is_known_ = false; }
     void forget_velocity() noexcept override { acceleration_is_known_ = false; }
     void forget_acceleration() noexcept override { acceleration_is_known_ = false; }

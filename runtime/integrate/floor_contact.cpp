@@ -79,6 +79,11 @@ bool FloorContact::add(const kernels::NodeNumbering& numbering, std::span<const 
     return contacts_.size() > before;
 }
 
+void FloorContact::forget(std::int32_t node) {
+    std::erase_if(contacts_, [&](const Holds::Contact& contact) { return contact.node == node; });
+    touches_[static_cast<std::size_t>(node)] = 0;
+}
+
 void FloorContact::restore(std::span<const Holds::Contact> contacts) {
     for (const Holds::Contact& contact : contacts_) touches_[contact.node] = 0;
     contacts_.assign(contacts.begin(), contacts.end());

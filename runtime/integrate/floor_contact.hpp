@@ -39,6 +39,8 @@ class FloorContact {
     std::span<const Holds::Contact> contacts() const noexcept { return contacts_; }
     const mesh::Point& normal() const noexcept { return floor_->normal; }
 
+    /// Ends the contact of a node that is no more.
+    void forget(std::int32_t node);
     /// Takes up saved contacts.
     void restore(std::span<const Holds::Contact> contacts);
     std::size_t bytes() const noexcept;

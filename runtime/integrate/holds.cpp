@@ -73,6 +73,21 @@ Holds::Holds(const Scene& scene, const kernels::NodeNumbering& numbering)
     }
 }
 
+void Holds::prescribe(const PrescribedDisplacement& prescribed, std::int32_t node, double rest) {
+    prescribed_.push_back({.node = node,
+                           .user_node = prescribed.node,
+                           .axis = static_cast<std::size_t>(prescribed.axis),
+                           .rest = rest,
+                           .displacement = prescribed.displacement});
+    filter_is_known_ = false;
+}
+
+void Holds::forget(std::int32_t node) {
+    std::erase_if(prescribed_, [&](const Prescribed& prescribed) { return prescribed.node == node; });
+    std::erase_if(contacts_, [&](const Contact& contact) { return contact.node == node; });
+    release(node);
+}
+
 bool Holds::hold(std::int32_t node, const Point& target, const Point& direction) {
     const auto held = std::find_if(holds_.begin(), holds_.end(), [&](const Hold& h) { return h.node == node; });
     if (held != holds_.end()) {

@@ -40,6 +40,11 @@ class Holds {
     void release(std::int32_t node);
     void release_all();
 
+    /// Adds a prescribed displacement of a free node (internal numbering), which is at `rest` on that axis.
+    void prescribe(const PrescribedDisplacement& prescribed, std::int32_t node, double rest);
+    /// Takes away what leads a node that is no more.
+    void forget(std::int32_t node);
+
     /// A node that rests on a plane with the given normal.
     struct Contact {
         std::int32_t node;  ///< internal numbering

@@ -583,6 +583,19 @@ LargestEigenvalue ImplicitStep<Real, Accumulate>::largest_eigenvalue(Scheduler& 
 }
 
 template <class Real, class Accumulate>
+bool ImplicitStep<Real, Accumulate>::change(const LayoutChange& change) {
+    for (const LayoutChange::NodalMass& changed : change.masses) {
+        inertia_.row_sums[changed.node] = changed.mass;
+        if (!inertia_.consistent.empty() && numbering_->is_free(changed.node)) {
+            inertia_.consistent.set_row(changed.node, changed.row);
+        }
+    }
+    if (!inertia_.consistent.empty()) inertia_.consistent.compress();
+    forget();
+    return matrix_->change(change) && preconditioner_->change(change);
+}
+
+template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::forget_velocity() noexcept {
     energy_is_known_ = false;
     acceleration_is_known_ = false;

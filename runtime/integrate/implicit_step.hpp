@@ -36,6 +36,8 @@ class ImplicitStep final : public StepMethod<Real> {
                       std::span<Real> out) override;
     LargestEigenvalue largest_eigenvalue(Scheduler& scheduler, const double* position, double tolerance) override;
 
+    bool change(const LayoutChange& change) override;
+
     void forget() noexcept override;
     void forget_velocity() noexcept override;
     void forget_acceleration() noexcept override { acceleration_is_known_ = false; }

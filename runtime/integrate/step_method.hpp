@@ -59,6 +59,10 @@ class StepMethod {
     /// The largest eigenvalue of M^-1 K, M lumped, over the free nodes at these positions, in 1 / s^2.
     virtual LargestEigenvalue largest_eigenvalue(Scheduler& scheduler, const double* position, double tolerance) = 0;
 
+    /// Takes up elements and masses that have changed, after the elements themselves have. False where there is no
+    /// room, which leaves the method unfit for use.
+    virtual bool change(const LayoutChange& change) = 0;
+
     /// Tells that the motion was changed from outside: energies, operator and accelerations are taken up anew.
     virtual void forget() noexcept = 0;
     /// Tells that the velocities alone were changed.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/kernels/layout/spare_nodes.hpp"
 #include "lancet/runtime/integrate/explicit_step.hpp"
 #include "lancet/runtime/integrate/floor_contact.hpp"
 #include "lancet/runtime/integrate/holds.hpp"
@@ -166,6 +167,44 @@ class BodyOf final : public DeformableBody {
         step_->forget_acceleration();
     }
 
+    NodeMotion motion(std::int32_t node) const override {
+        const std::size_t at = 4 * static_cast<std::size_t>(internal_node(node));
+        NodeMotion motion;
+        std::copy_n(&motion_.position[at], 3, motion.position.begin());
+        std::copy_n(&motion_.velocity[at], 3, motion.velocity.begin());
+        return motion;
+    }
+
+    bool change(const BodyChange& change) override {
+        const bool is_by_rows = settings_.matrix == OperatorKind::block_rows && !is_explicit(settings_.integrator);
+        if (!numbering_.has_room() || is_by_rows || settings_.scatter != kernels::ScatterStrategy::private_copies) {
+            return false;
+        }
+        std::vector<std::int32_t> numbers;
+        LayoutChange layout;
+        if (!number(change, numbers) || !lay_out(change, numbers, layout)) return false;
+        std::vector<std::int32_t> gone;
+        for (std::size_t user = static_cast<std::size_t>(change.first_node); user < nodes(); ++user) {
+            const std::int32_t node = numbering_.internal_of_user[user];
+            if (std::find(numbers.begin(), numbers.end(), node) == numbers.end()) gone.push_back(node);
+        }
+        for (const std::int32_t node : gone) layout.masses.push_back({.node = node});
+        const auto internal = [&](std::int32_t node) { return number_of(change, numbers, node); };
+        for (const BodyChange::NodalMass& changed : change.masses) {
+            LayoutChange::NodalMass& mass = layout.masses.emplace_back();
+            mass.node = internal(changed.node);
+            mass.mass = changed.mass;
+            for (const auto& [node, pair] : changed.row) mass.row.emplace_back(internal(node), pair);
+        }
+        if (!step_->change(layout)) return false;
+        for (const LayoutChange::NodalMass& changed : layout.masses) mass_[changed.node] = changed.mass;
+        holds_.release_all();
+        for (const std::int32_t node : gone) give_back(node);
+        take_nodes(change, numbers);
+        ++changes_;
+        return true;
+    }
+
     Energies energies(Scheduler& scheduler) override {
         return step_->energies(scheduler, motion_, loads_, rest_position_);
     }
@@ -213,9 +252,12 @@ class BodyOf final : public DeformableBody {
 
     BodyState save() const override {
         BodyState state;
-        state.numbers_ = {static_cast<double>(element_count_), static_cast<double>(motion_.position.size()),
+        state.numbers_ = {static_cast<double>(element_count_),
+                          static_cast<double>(changes_),
+                          static_cast<double>(motion_.position.size()),
                           static_cast<double>(elements_.quaternions().size_bytes()),
-                          static_cast<double>(elements_.rotated_gradients().size_bytes()), time_};
+                          static_cast<double>(elements_.rotated_gradients().size_bytes()),
+                          time_};
         for (const auto* vector : {&motion_.position, &motion_.velocity, &motion_.acceleration, &loads_.nodal}) {
             state.numbers_.insert(state.numbers_.end(), vector->begin(), vector->end());
         }
@@ -230,14 +272,15 @@ class BodyOf final : public DeformableBody {
 
     void restore(Scheduler& scheduler, const BodyState& state) override {
         std::span<const double> numbers = state.numbers_;
-        const bool fits = numbers.size() > 5 && numbers[0] == static_cast<double>(element_count_) &&
-                          numbers[1] == static_cast<double>(motion_.position.size()) &&
-                          numbers[2] == static_cast<double>(elements_.quaternions().size_bytes()) &&
-                          numbers[3] == static_cast<double>(elements_.rotated_gradients().size_bytes()) &&
+        const bool fits = numbers.size() > 6 && numbers[0] == static_cast<double>(element_count_) &&
+                          numbers[1] == static_cast<double>(changes_) &&
+                          numbers[2] == static_cast<double>(motion_.position.size()) &&
+                          numbers[3] == static_cast<double>(elements_.quaternions().size_bytes()) &&
+                          numbers[4] == static_cast<double>(elements_.rotated_gradients().size_bytes()) &&
                           state.numbers_.size() == save().numbers_.size();
         if (!fits) throw Error("restore: the state was saved by a body of another scene or other settings");
-        time_ = numbers[4];
-        numbers = numbers.subspan(5);
+        time_ = numbers[5];
+        numbers = numbers.subspan(6);
         for (auto* vector : {&motion_.position, &motion_.velocity, &motion_.acceleration, &loads_.nodal}) {
             std::copy_n(numbers.begin(), vector->size(), vector->begin());
             numbers = numbers.subspan(vector->size());
@@ -423,6 +466,115 @@ class BodyOf final : public DeformableBody {
         }
     }
 
+    /// The internal number of a node of the body that a change makes.
+    std::int32_t number_of(const BodyChange& change, std::span<const std::int32_t> numbers, std::int32_t node) const {
+        return node < change.first_node ? numbering_.internal_of_user[node]
+                                        : numbers[static_cast<std::size_t>(node - change.first_node)];
+    }
+
+    /// Gives new nodes internal numbers and their places at rest. False where there is no room.
+    bool number(const BodyChange& change, std::vector<std::int32_t>& numbers) {
+        numbers.reserve(change.nodes.size());
+        for (const BodyChange::Node& node : change.nodes) {
+            numbers.push_back(node.before < 0 ? -1 : numbering_.internal_of_user[node.before]);
+        }
+        const auto take = [&](std::size_t place, std::span<const std::int32_t> neighbours) {
+            const BodyChange::Node& node = change.nodes[place];
+            const auto user = change.first_node + static_cast<std::int32_t>(place);
+            numbers[place] = spare_nodes_.take(numbering_, user, node.is_fixed, neighbours);
+            if (numbers[place] < 0) return false;
+            std::copy_n(node.rest.begin(), 3, &rest_position_[4 * static_cast<std::size_t>(numbers[place])]);
+            return true;
+        };
+        // Along elements, so that neighbours are known.
+        for (const BodyChange::Element& element : change.elements) {
+            if (!element.is_there) continue;
+            kernels::Tetrahedron known{};
+            for (std::size_t k = 0; k < 4; ++k) known[k] = number_of(change, numbers, element.nodes[k]);
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (known[k] >= 0) continue;
+                const auto place = static_cast<std::size_t>(element.nodes[k] - change.first_node);
+                if (!take(place, known)) return false;
+                known[k] = numbers[place];
+            }
+        }
+        // A copy may have no element yet.
+        for (std::size_t place = 0; place < numbers.size(); ++place) {
+            if (numbers[place] < 0 && !take(place, {})) return false;
+        }
+        return true;
+    }
+
+    bool lay_out(const BodyChange& change, std::span<const std::int32_t> numbers, LayoutChange& layout) {
+        std::vector<std::int32_t>& slots = elements_.slot_of_element();
+        const auto changed_slot = [&](const BodyChange::Element& element) -> std::int32_t& {
+            const auto number = static_cast<std::size_t>(element.element);
+            if (number >= slots.size()) slots.resize(number + 1, -1);
+            return slots[number];
+        };
+        for (const BodyChange::Element& element : change.elements) {
+            std::int32_t& slot = changed_slot(element);
+            kernels::ElementMove move;
+            if (slot >= 0) move.before = nodes_of_slot(elements_.batches(), slot);
+            if (slot < 0) ++element_count_;
+            if (!element.is_there) --element_count_;
+            if (!element.is_there) {
+                move.slot = slot;
+                if (!elements_.change(slot, nullptr, -1)) return false;
+                slot = -1;
+                layout.moves.push_back(move);
+                continue;
+            }
+            kernels::ChangedElement laid_out{.nodes = {},
+                                             .geometry = {},
+                                             .material = element.material,
+                                             .fraction = element.fraction,
+                                             .pair_masses = element.pair_masses};
+            std::array<Point, 4> corners{};
+            for (std::size_t k = 0; k < 4; ++k) {
+                laid_out.nodes[k] = number_of(change, numbers, element.nodes[k]);
+                std::copy_n(&rest_position_[4 * static_cast<std::size_t>(laid_out.nodes[k])], 3, corners[k].begin());
+            }
+            laid_out.geometry = kernels::tetrahedron_geometry(corners, {0, 1, 2, 3});
+            if (!elements_.change(slot, &laid_out, element.like < 0 ? -1 : slots[element.like])) return false;
+            move.slot = slot;
+            move.after = laid_out.nodes;
+            layout.moves.push_back(move);
+        }
+        elements_.finish_changes(rest_position_.data());
+        return true;
+    }
+
+    void give_back(std::int32_t node) {
+        kernels::SpareNodes::give_back(numbering_, node);
+        std::fill_n(&loads_.nodal[4 * static_cast<std::size_t>(node)], 4, 0.0);
+        holds_.forget(node);
+        if (floor_.exists()) floor_.forget(node);
+    }
+
+    /// Takes the new numbering up, with what the nodes carry.
+    void take_nodes(const BodyChange& change, std::span<const std::int32_t> numbers) {
+        numbering_.internal_of_user.resize(static_cast<std::size_t>(change.first_node));
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            const BodyChange::Node& node = change.nodes[k];
+            const auto at = static_cast<std::size_t>(numbers[k]);
+            numbering_.user_of_internal[at] = static_cast<std::int32_t>(numbering_.internal_of_user.size());
+            numbering_.internal_of_user.push_back(numbers[k]);
+            std::copy_n(node.position.begin(), 3, &motion_.position[4 * at]);
+            std::copy_n(node.velocity.begin(), 3, &motion_.velocity[4 * at]);
+            if (node.before >= 0) continue;
+            if (!motion_.acceleration.empty()) std::fill_n(&motion_.acceleration[4 * at], 4, 0.0);
+            std::fill_n(&loads_.nodal[4 * at], 4, 0.0);
+        }
+        for (const PrescribedDisplacement& prescribed : change.prescribed) {
+            const std::int32_t node = numbering_.internal_of_user[prescribed.node];
+            holds_.prescribe(
+                prescribed, node,
+                rest_position_[4 * static_cast<std::size_t>(node) + static_cast<std::size_t>(prescribed.axis)]);
+        }
+        if (floor_.exists()) holds_.set_contacts(floor_.contacts(), floor_.normal(), true);
+    }
+
     void add_hold(std::int32_t node, const Point& target, const Point& direction) {
         const std::int32_t internal = internal_node(node);
         if (!numbering_.is_free(internal)) {
@@ -448,6 +600,8 @@ class BodyOf final : public DeformableBody {
     StepTotals totals_;
     StepReport report_;  ///< of the step that is under way
     double time_ = 0;
+    kernels::SpareNodes spare_nodes_{numbering_};
+    std::int64_t changes_ = 0;
 };
 
 std::unique_ptr<DeformableBody> make_body(const Scene& scene, const Settings& settings, Scheduler& scheduler) {

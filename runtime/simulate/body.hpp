@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lancet/runtime/schedule/scheduler.hpp"
+#include "lancet/runtime/simulate/body_change.hpp"
 #include "lancet/runtime/simulate/scene.hpp"
 #include "lancet/runtime/simulate/settings.hpp"
 
@@ -123,6 +124,17 @@ class DeformableBody {
     virtual void hold(std::int32_t node, const Point& target, const Point& direction) = 0;
     virtual void release(std::int32_t node) = 0;
     virtual void release_all() = 0;
+
+    struct NodeMotion {
+        Point position{}, velocity{};
+    };
+    virtual NodeMotion motion(std::int32_t node) const = 0;
+
+    /// Becomes another body, with work in proportion to what changes. Loads on new nodes are zero, and all holds are
+    /// released. Returns false where that cannot be done in place: for block rows, for other scatter strategies than
+    /// private copies, and where the room that Settings::numbering asked for is used up. The motion is as it was then,
+    /// and the body good for nothing else.
+    virtual bool change(const BodyChange& change) = 0;
 
     /// Energies now. Gravity is measured from the rest position.
     virtual Energies energies(Scheduler& scheduler) = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
@@ -76,6 +75,15 @@ struct CoarseMatrices {
     SparseFactor factor;
     bool is_dense = true;
     bool is_usable = false;
+
+    /// True where the matrix has room for the block of two aggregates.
+    bool holds(int a, int b) const {
+        if (is_dense) return true;
+        const int row = modes * std::min(place[a], place[b]), column = modes * std::max(place[a], place[b]);
+        const int* begin = sparse.innerIndexPtr() + sparse.outerIndexPtr()[column];
+        const int* end = sparse.innerIndexPtr() + sparse.outerIndexPtr()[column + 1];
+        return std::binary_search(begin, end, row);
+    }
 };
 
 template <class Real>
@@ -86,53 +94,83 @@ CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const ke
       edges_(&edges),
       aggregate_of_(static_cast<std::size_t>(numbering.node_count), -1),
       offset_(static_cast<std::size_t>(numbering.node_count) * 4),
-      restricted_(static_cast<std::size_t>(numbering.aggregates()) * modes),
-      correction_(restricted_.size()),
       change_(static_cast<std::size_t>(numbering.blocks())),
       matrices_(std::make_unique<CoarseMatrices>()) {
-    CoarseMatrices& m = *matrices_;
     for (int aggregate = 0; aggregate < numbering.aggregates(); ++aggregate) {
         for (std::int32_t node = numbering.aggregate_begin[aggregate]; node < numbering.aggregate_begin[aggregate + 1];
              ++node) {
             aggregate_of_[node] = aggregate;
         }
     }
-    m.diagonal.resize(static_cast<std::size_t>(numbering.aggregates()));
-    m.inside.resize(m.diagonal.size() * kernels::coarse_diagonal_sums);
-    m.basis.resize(m.diagonal.size());
-    m.crossing.resize(static_cast<std::size_t>(numbering.blocks()));
-    m.pairs.resize(m.crossing.size());
+    matrices_->crossing.resize(static_cast<std::size_t>(numbering.blocks()));
+    matrices_->pairs.resize(matrices_->crossing.size());
+    for (int block = 0; block < numbering.blocks(); ++block) take_up_edges(block);
+    take_up_aggregates();
+}
 
-    const kernels::RowPattern& pattern = edges.pattern();
-    for (int block = 0; block < numbering.blocks(); ++block) {
-        std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> pair_of;
-        for (std::int32_t chunk = pattern.block_chunk_begin[block]; chunk < pattern.block_chunk_begin[block + 1];
-             ++chunk) {
-            for (std::int32_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
-                 ++entry) {
-                for (int lane = 0; lane < pattern.width; ++lane) {
-                    const std::int32_t row = pattern.row[chunk * pattern.width + lane] / 4;
-                    const std::int32_t column = pattern.column[entry * pattern.width + lane] / 4;
-                    const std::int32_t a = aggregate_of_[row], b = aggregate_of_[column];
-                    if (a == b) continue;
-                    std::int32_t pair = -1;
-                    if (b >= 0) {
-                        const auto [found, is_new] =
-                            pair_of.try_emplace({a, b}, static_cast<std::int32_t>(m.pairs[block].size()));
-                        if (is_new) m.pairs[block].push_back({a, b, Matrix6::Zero(), Matrix6::Zero()});
-                        pair = found->second;
-                    }
-                    m.crossing[block].push_back({entry * 9 * pattern.width + lane, row, column, pair});
-                }
+template <class Real>
+void CoarseSpace<Real>::change(std::span<const int> blocks) {
+    for (const int block : blocks) take_up_edges(block);
+    is_fresh_ = false;
+    CoarseMatrices& m = *matrices_;
+    // The pattern of a sparse matrix holds as long as it has all pairs.
+    bool holds_all = unknowns() == modes * numbering_->block_aggregate_begin.back();
+    for (const int block : blocks) {
+        for (const AggregatePair& pair : m.pairs[block]) holds_all = holds_all && m.holds(pair.first, pair.second);
+    }
+    if (!holds_all) take_up_aggregates();
+}
+
+template <class Real>
+void CoarseSpace<Real>::take_up_edges(int block) {
+    CoarseMatrices& m = *matrices_;
+    const kernels::RowPattern& pattern = edges_->pattern();
+    std::vector<AggregatePair>& pairs = m.pairs[block];
+    m.crossing[block].clear();
+    pairs.clear();
+    // A block borders on few aggregates, and an edge mostly on those of the one before.
+    std::size_t last = 0;
+    const auto pair_of = [&](std::int32_t a, std::int32_t b) {
+        const auto is_pair = [&](const AggregatePair& pair) { return pair.first == a && pair.second == b; };
+        if (last < pairs.size() && is_pair(pairs[last])) return static_cast<std::int32_t>(last);
+        const auto found = std::find_if(pairs.begin(), pairs.end(), is_pair);
+        last = static_cast<std::size_t>(found - pairs.begin());
+        if (found == pairs.end()) pairs.push_back({a, b, Matrix6::Zero(), Matrix6::Zero()});
+        return static_cast<std::int32_t>(last);
+    };
+    const auto is_own = [&](std::int32_t row) {
+        return numbering_->block_begin[block] <= row && row < numbering_->block_begin[block + 1];
+    };
+    for (std::int32_t chunk = pattern.block_chunk_begin[block]; chunk < pattern.block_chunk_begin[block + 1]; ++chunk) {
+        for (std::int32_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
+             ++entry) {
+            for (int lane = 0; lane < pattern.width; ++lane) {
+                const std::int32_t row = pattern.row[chunk * pattern.width + lane] / 4;
+                const std::int32_t column = pattern.column[entry * pattern.width + lane] / 4;
+                const std::int32_t a = aggregate_of_[row], b = aggregate_of_[column];
+                // The room also has edges within aggregates of other blocks.
+                if (a == b && (row == column || is_own(row))) continue;
+                m.crossing[block].push_back(
+                    {entry * 9 * pattern.width + lane, row, column, b >= 0 ? pair_of(a, b) : -1});
             }
         }
     }
+}
 
-    const int unknowns = modes * numbering.aggregates();
+template <class Real>
+void CoarseSpace<Real>::take_up_aggregates() {
+    CoarseMatrices& m = *matrices_;
+    const int aggregates = numbering_->block_aggregate_begin.back(), unknowns = modes * aggregates;
+    restricted_.assign(static_cast<std::size_t>(unknowns), 0.0);
+    correction_.assign(restricted_.size(), Real(0));
+    m.diagonal.resize(static_cast<std::size_t>(aggregates));
+    m.inside.resize(m.diagonal.size() * kernels::coarse_diagonal_sums);
+    m.basis.resize(m.diagonal.size());
     m.scale.resize(unknowns);
     m.right_hand_side.resize(unknowns);
     m.solution.resize(unknowns);
     m.is_dense = unknowns <= dense_limit;
+    m.is_usable = false;
     if (m.is_dense) {
         m.dense.resize(unknowns, unknowns);
         m.inverse.resize(unknowns, unknowns);
@@ -140,19 +178,20 @@ CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const ke
     }
     // The pattern of the coarse matrix by aggregates, its elimination order, and the permuted upper triangle.
     std::vector<Eigen::Triplet<double>> graph;
-    for (int a = 0; a < numbering.aggregates(); ++a) graph.emplace_back(a, a, 1.0);
+    for (int a = 0; a < aggregates; ++a) graph.emplace_back(a, a, 1.0);
     for (const auto& pairs : m.pairs) {
         for (const AggregatePair& pair : pairs) {
+            if (pair.first == pair.second) continue;
             graph.emplace_back(pair.first, pair.second, 1.0);
             graph.emplace_back(pair.second, pair.first, 1.0);
         }
     }
-    Eigen::SparseMatrix<double> adjacency(numbering.aggregates(), numbering.aggregates());
+    Eigen::SparseMatrix<double> adjacency(aggregates, aggregates);
     adjacency.setFromTriplets(graph.begin(), graph.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     Eigen::AMDOrdering<int>()(adjacency, order);
-    m.place.resize(numbering.aggregates());
-    for (int k = 0; k < numbering.aggregates(); ++k) m.place[order.indices()[k]] = k;
+    m.place.resize(aggregates);
+    for (int k = 0; k < aggregates; ++k) m.place[order.indices()[k]] = k;
     std::vector<Eigen::Triplet<double>> entries;
     for (int column = 0; column < adjacency.outerSize(); ++column) {
         for (Eigen::SparseMatrix<double>::InnerIterator it(adjacency, column); it; ++it) {
@@ -233,6 +272,7 @@ void CoarseSpace<Real>::set_modes(const double* positions, int block) {
         // Rotations about principal axes of no extent move nothing: a node alone has none, collinear nodes two.
         Matrix6& basis = matrices_->basis[a];
         basis.setZero();
+        if (count == 0) continue;
         basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
         Eigen::SelfAdjointEigenSolver<Matrix3> axes;
         axes.computeDirect(inertia);
@@ -330,10 +370,15 @@ void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
 template <class Real>
 bool CoarseSpace<Real>::refresh(Scheduler& scheduler, const double* positions, const Real* scaled_mass) {
     scheduler.for_each_block(numbering_->blocks(), [&](int block) { set_modes(positions, block); });
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) { accumulate(scaled_mass, block); });
+    scheduler.for_each_block(numbering_->first_blocks(), [&](int block) { accumulate(scaled_mass, block); });
+    // The room also has edges of aggregates of other blocks.
+    if (numbering_->has_room()) accumulate(scaled_mass, numbering_->first_blocks());
     CoarseMatrices& m = *matrices_;
     for (const auto& pairs : m.pairs) {
-        for (const AggregatePair& pair : pairs) m.diagonal[pair.second] += pair.second_diagonal;
+        for (const AggregatePair& pair : pairs) {
+            m.diagonal[pair.second] += pair.second_diagonal;
+            if (pair.first == pair.second) m.diagonal[pair.first] += pair.coupling + pair.coupling.transpose();
+        }
     }
     for (Matrix6& diagonal : m.diagonal) {
         diagonal.bottomLeftCorner<3, 3>() = diagonal.topRightCorner<3, 3>().transpose();
@@ -372,6 +417,7 @@ bool CoarseSpace<Real>::factorise() {
         }
         for (const auto& pairs : m.pairs) {
             for (const AggregatePair& pair : pairs) {
+                if (pair.first == pair.second) continue;
                 const Matrix6 block = scaled(pair.first, pair.second, pair.coupling);
                 m.dense.block<modes, modes>(modes * pair.first, modes * pair.second) += block;
                 m.dense.block<modes, modes>(modes * pair.second, modes * pair.first) += block.transpose();
@@ -402,6 +448,7 @@ bool CoarseSpace<Real>::factorise() {
     for (int a = 0; a < aggregates; ++a) add(a, a, scaled(a, a, m.diagonal[a]));
     for (const auto& pairs : m.pairs) {
         for (const AggregatePair& pair : pairs) {
+            if (pair.first == pair.second) continue;
             const Matrix6 block = scaled(pair.first, pair.second, pair.coupling);
             if (m.place[pair.first] < m.place[pair.second]) {
                 add(pair.first, pair.second, block);

@@ -35,6 +35,9 @@ class CoarseSpace {
     /// sqrt(sum |r_i - r_i'|^2 / sum |r_i'|^2) with r_i the offsets from its centre. Infinite before the first refresh.
     double change(Scheduler& scheduler, const double* positions);
 
+    /// Takes up that the edges of some blocks have changed, or the numbering has grown; a refresh comes next.
+    void change(std::span<const int> blocks);
+
     /// Takes up modes at `positions` and the matrix from the edge blocks and scaled nodal masses. Returns false if the
     /// coarse matrix is not positive definite (the edge blocks are not finite, say); the correction is then zero.
     bool refresh(Scheduler& scheduler, const double* positions, const Real* scaled_mass);
@@ -54,6 +57,8 @@ class CoarseSpace {
     void restore(std::span<const double>& numbers);
 
   private:
+    void take_up_edges(int block);
+    void take_up_aggregates();
     void set_modes(const double* positions, int block);
     void accumulate(const Real* scaled_mass, int block);
     bool factorise();

@@ -1,5 +1,7 @@
 #include "lancet/runtime/solve/elastic_elements.hpp"
 
+#include <algorithm>
+
 #include "lancet/kernels/error.hpp"
 #include "lancet/runtime/schedule/ordered_sum.hpp"
 #include "lancet/runtime/solve/block_loop.hpp"
@@ -84,6 +86,14 @@ kernels::TetrahedronArguments<Real> ElasticElements<Real>::arguments(const doubl
 }
 
 template <class Real>
+kernels::TetrahedronArguments<Real> ElasticElements<Real>::arguments_at_rest(const double* positions) {
+    auto at_rest = arguments(positions, {.rotation = true, .force = false, .energy = false});
+    at_rest.method = kernels::RotationMethod::quaternion;
+    at_rest.rotation_steps = 0;
+    return at_rest;
+}
+
+template <class Real>
 void ElasticElements<Real>::reset(Scheduler& scheduler, const double* positions) {
     const auto width = static_cast<std::size_t>(batches_.width);
     for (std::size_t i = 0; i < quaternion_.size(); ++i) quaternion_[i] = (i / width) % 4 == 0 ? Real(1) : Real(0);
@@ -91,11 +101,47 @@ void ElasticElements<Real>::reset(Scheduler& scheduler, const double* positions)
         evaluate(scheduler, positions, {.rotation = true, .force = false});
         return;
     }
-    auto gradients_at_rest = arguments(positions, {.rotation = true, .force = false, .energy = false});
-    gradients_at_rest.method = kernels::RotationMethod::quaternion;
-    gradients_at_rest.rotation_steps = 0;
+    const auto gradients_at_rest = arguments_at_rest(positions);
     scheduler.for_each_block(numbering_->blocks(),
                              [&](int block) { kernels_->tetrahedron.elastic(gradients_at_rest, block); });
+}
+
+template <class Real>
+bool ElasticElements<Real>::change(std::int32_t& slot, const kernels::ChangedElement* element, std::int32_t like) {
+    const auto block_of = [&](std::int32_t of_slot) {
+        const auto& begin = batches_.block_batch_begin;
+        return static_cast<int>(std::upper_bound(begin.begin(), begin.end(), of_slot / batches_.width) -
+                                begin.begin()) -
+               1;
+    };
+    if (element == nullptr) {
+        clear_slot(batches_, slot);
+        return true;
+    }
+    if (slot < 0) {
+        slot = take_slot(batches_, *element);
+        if (slot < 0) return false;
+        const auto width = static_cast<std::size_t>(batches_.width), to = static_cast<std::size_t>(slot),
+                   from = static_cast<std::size_t>(like);
+        for (std::size_t k = 0; k < 4; ++k) {
+            quaternion_[(to / width * 4 + k) * width + to % width] =
+                quaternion_[(from / width * 4 + k) * width + from % width];
+        }
+    }
+    changed_blocks_.push_back(block_of(slot));
+    return set_element(batches_, *numbering_, slot, *element);
+}
+
+template <class Real>
+void ElasticElements<Real>::finish_changes(const double* rest_positions) {
+    batches_.scatter.finish_changes();
+    std::sort(changed_blocks_.begin(), changed_blocks_.end());
+    changed_blocks_.erase(std::unique(changed_blocks_.begin(), changed_blocks_.end()), changed_blocks_.end());
+    if (law_.model == ElementModel::linear) {
+        const auto at_rest = arguments_at_rest(rest_positions);
+        for (const int block : changed_blocks_) kernels_->tetrahedron.elastic(at_rest, block);
+    }
+    changed_blocks_.clear();
 }
 
 template <class Real>

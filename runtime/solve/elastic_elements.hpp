@@ -58,6 +58,17 @@ class ElasticElements {
     /// corotational one. `positions` are those at rest.
     void reset(Scheduler& scheduler, const double* positions);
 
+    /// Lays out an element that comes, stays in its slot with other nodes or another weight, or, without `element`,
+    /// goes; `slot` is -1 for one that comes, and becomes its own. It starts from the rotation of the element in the
+    /// slot `like`. `numbering` is that of the elements. Returns false where there is no room, which leaves the
+    /// elements unfit for use. When all changes are made, call finish_changes.
+    bool change(std::int32_t& slot, const kernels::ChangedElement* element, std::int32_t like);
+    /// The slot of each element of the body, -1 for one that is not there.
+    std::vector<std::int32_t>& slot_of_element() noexcept { return batches_.slot_of_element; }
+    /// Completes changes. Takes the gradients at rest up anew where elements have changed, for the linear model, which
+    /// never renews them; `rest_positions` are xyz_.
+    void finish_changes(const double* rest_positions);
+
     /// Evaluates at `positions` (xyz_, internal numbering). The force is complete at the free nodes after
     /// `merge_force` of each block. Returns the elastic energy in joules if wanted, else 0.
     double evaluate(Scheduler& scheduler, const double* positions, const Wanted& wanted);
@@ -94,6 +105,8 @@ class ElasticElements {
 
   private:
     kernels::TetrahedronArguments<Real> arguments(const double* positions, const Wanted& wanted);
+    /// Gradients as the rotations are, without a step of them.
+    kernels::TetrahedronArguments<Real> arguments_at_rest(const double* positions);
     kernels::HyperelasticArguments<Real> hyperelastic_arguments(const double* positions, const Wanted& wanted);
     /// Adds the elements' shares, add(block), to the force buffer, which is cleared first where `is_wanted`.
     template <class Add>
@@ -109,6 +122,7 @@ class ElasticElements {
     kernels::AlignedVector<Real> rotated_;
     kernels::AlignedVector<Real> force_;
     std::vector<double> energy_;
+    std::vector<int> changed_blocks_;
 };
 
 }  // namespace lancet::runtime

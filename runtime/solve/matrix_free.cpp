@@ -22,6 +22,12 @@ void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors) {
 }
 
 template <class Real>
+bool MatrixFree<Real>::change(const LayoutChange& change) {
+    pair_mass_factor_ = 0;  // the elements' masses are scaled anew
+    return Operator<Real>::change(change);
+}
+
+template <class Real>
 void MatrixFree<Real>::add_product(const kernels::ProductArguments<Real>& product, int block) const {
     const kernels::ElementBatches<Real>& batches = this->elements().batches();
     const kernels::MatrixFreeArguments<Real> matrix{.block_batch_begin = batches.block_batch_begin.data(),

@@ -15,6 +15,7 @@ class MatrixFree final : public Operator<Real> {
 
     OperatorKind kind() const noexcept override { return OperatorKind::matrix_free; }
     void assemble(Scheduler& scheduler, const Factors& factors) override;
+    bool change(const LayoutChange& change) override;
     std::size_t bytes() const noexcept override;
     Work work() const noexcept override;
 

@@ -53,6 +53,15 @@ void Operator<Real>::set_factors(const Factors& factors) {
 }
 
 template <class Real>
+bool Operator<Real>::change(const LayoutChange& change) {
+    for (const LayoutChange::NodalMass& changed : change.masses) {
+        nodal_mass_[changed.node] = changed.mass;
+        scaled_mass_[changed.node] = static_cast<Real>(factors_.mass * changed.mass);
+    }
+    return true;
+}
+
+template <class Real>
 double Operator<Real>::product(Scheduler& scheduler, const Real* z) {
     const bool exclusive = plan_->strategy() == ScatterStrategy::node_gather;
     const kernels::OpenArguments<Real> open{.block_begin = numbering().block_begin.data(),

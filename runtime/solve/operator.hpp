@@ -7,6 +7,7 @@
 
 #include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/solve/elastic_elements.hpp"
+#include "lancet/runtime/solve/layout_change.hpp"
 #include "lancet/runtime/solve/mass_kind.hpp"
 
 namespace lancet::runtime {
@@ -43,6 +44,9 @@ class Operator {
     virtual OperatorKind kind() const noexcept = 0;
     /// Takes up the rotated gradients or blocks of the elements.
     virtual void assemble(Scheduler& scheduler, const Factors& factors) = 0;
+    /// Takes up elements and masses that have changed, after the elements themselves have; assemble comes next. False
+    /// where there is no room, which leaves the operator unfit for use.
+    virtual bool change(const LayoutChange& change);
     /// Fills buffer() with A z up to merging and returns z . A z.
     double product(Scheduler& scheduler, const Real* z);
     /// Completes the nodes of a block of buffer().

@@ -73,6 +73,20 @@ void Preconditioner<Real>::refresh(Scheduler& scheduler, const double* positions
 }
 
 template <class Real>
+bool Preconditioner<Real>::change(const LayoutChange& change) {
+    forget_coarse();
+    if (!coarse_) return true;
+    if (!own_edges_) {
+        coarse_->change(static_cast<RowOperator<Real>&>(*matrix_).changed_blocks());
+        return true;
+    }
+    std::vector<int> blocks;
+    if (!own_edges_->change(change, blocks)) return false;
+    coarse_->change(blocks);
+    return true;
+}
+
+template <class Real>
 std::size_t Preconditioner<Real>::bytes() const noexcept {
     return kernels::heap_bytes(inverse_) + (own_edges_ ? own_edges_->bytes() : 0) + (coarse_ ? coarse_->bytes() : 0);
 }

@@ -33,6 +33,9 @@ class Preconditioner {
     /// Takes up the operator, which has just been assembled at `positions`.
     void refresh(Scheduler& scheduler, const double* positions);
 
+    /// Takes up elements that have changed, after the operator has; a refresh comes next. False where there is no room.
+    bool change(const LayoutChange& change);
+
     /// [node / width][6][lane], or nullptr for the identity.
     const Real* inverse_diagonal() const noexcept { return inverse_.empty() ? nullptr : inverse_.data(); }
     /// nullptr if there is none.

@@ -1,5 +1,7 @@
 #include "lancet/runtime/solve/row_operators.hpp"
 
+#include <algorithm>
+
 namespace lancet::runtime {
 
 using kernels::RowContent;
@@ -18,33 +20,78 @@ BlockMatrix<Real>::BlockMatrix(RowContent content, ElasticElements<Real>& elemen
 }
 
 template <class Real>
+Real BlockMatrix<Real>::mass_at(std::size_t entry, std::size_t lane) const {
+    const auto width = static_cast<std::size_t>(pattern_.width);
+    const std::int32_t nothing = pattern_.nothing();
+    double mass = 0;
+    for (std::int32_t k = pattern_.incidence_begin[entry]; k < pattern_.incidence_begin[entry + 1]; ++k) {
+        const std::int32_t* corners = &pattern_.incidence[static_cast<std::size_t>(k) * 2 * width];
+        const std::int32_t row = corners[lane], column = corners[width + lane];
+        if (row == nothing) continue;
+        // On the diagonal the row sum is nodal: what is left is minus the masses of the corner's pairs.
+        const std::size_t slot = row >> 4, i = (row >> 2) & 3, j = (column >> 2) & 3;
+        const Real* pairs = &elements_->batches().pair_mass[slot / width * 6 * width + slot % width];
+        const auto pair = [&](std::size_t a, std::size_t b) {
+            return static_cast<double>(pairs[kernels::pair_of_corners(a, b) * width]);
+        };
+        if (i != j) {
+            mass += pair(i, j);
+        } else {
+            for (std::size_t other = 0; other < 4; ++other) mass -= other == i ? 0 : pair(i, other);
+        }
+    }
+    return static_cast<Real>(entry_mass_factor_ * mass);
+}
+
+template <class Real>
 void BlockMatrix<Real>::set_entry_mass(double mass_factor) {
     if (entry_mass_factor_ == mass_factor) return;
     entry_mass_factor_ = mass_factor;
     const auto width = static_cast<std::size_t>(pattern_.width);
-    const std::int32_t nothing = 16 * elements_->batches().slots();
     for (std::size_t entry = 0; entry < static_cast<std::size_t>(pattern_.entries()); ++entry) {
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            double mass = 0;
-            for (std::int32_t k = pattern_.incidence_begin[entry]; k < pattern_.incidence_begin[entry + 1]; ++k) {
-                const std::int32_t* corners = &pattern_.incidence[static_cast<std::size_t>(k) * 2 * width];
-                const std::int32_t row = corners[lane], column = corners[width + lane];
-                if (row == nothing) continue;
-                // On the diagonal the row sum is nodal: what is left is minus the masses of the corner's pairs.
-                const std::size_t slot = row >> 4, i = (row >> 2) & 3, j = (column >> 2) & 3;
-                const Real* pairs = &elements_->batches().pair_mass[slot / width * 6 * width + slot % width];
-                const auto pair = [&](std::size_t a, std::size_t b) {
-                    return static_cast<double>(pairs[kernels::pair_of_corners(a, b) * width]);
-                };
-                if (i != j) {
-                    mass += pair(i, j);
-                } else {
-                    for (std::size_t other = 0; other < 4; ++other) mass -= other == i ? 0 : pair(i, other);
-                }
-            }
-            entry_mass_[entry * width + lane] = static_cast<Real>(mass_factor * mass);
+        for (std::size_t lane = 0; lane < width; ++lane) entry_mass_[entry * width + lane] = mass_at(entry, lane);
+    }
+}
+
+template <class Real>
+bool BlockMatrix<Real>::change(const LayoutChange& change, std::vector<int>& blocks) {
+    if (pattern_.room_begin.empty()) return false;
+    const kernels::NodeNumbering& numbering = elements_->numbering();
+    if (!changes_) changes_.emplace(pattern_, numbering);
+    changes_->forget_changed_places();
+    for (const kernels::ElementMove& move : change.moves) {
+        if (!changes_->enter(pattern_, numbering, move)) return false;
+    }
+    pattern_.scatter.finish_changes();
+    const auto width = static_cast<std::size_t>(pattern_.width);
+    std::vector<bool> is_changed(static_cast<std::size_t>(numbering.blocks()));
+    for (const std::int32_t place : changes_->changed_places()) {
+        const std::size_t entry = static_cast<std::size_t>(place) / width;
+        const auto chunk = std::upper_bound(pattern_.chunk_entry_begin.begin(), pattern_.chunk_entry_begin.end(),
+                                            static_cast<std::int32_t>(entry)) -
+                           pattern_.chunk_entry_begin.begin() - 1;
+        const std::int32_t row = pattern_.row[static_cast<std::size_t>(chunk) * width + place % width] / 4;
+        is_changed[static_cast<std::size_t>(chunk < pattern_.room_begin.front() ? numbering.block_of(row)
+                                                                                : numbering.first_blocks())] = true;
+    }
+    if (!entry_mass_.empty()) {
+        const auto take_mass = [&](std::int32_t entry, std::int32_t lane) {
+            entry_mass_[static_cast<std::size_t>(entry) * width + static_cast<std::size_t>(lane)] =
+                mass_at(static_cast<std::size_t>(entry), static_cast<std::size_t>(lane));
+        };
+        for (const std::int32_t place : changes_->changed_places()) {
+            take_mass(place / pattern_.width, place % pattern_.width);
+        }
+        // Elements may have changed in weight alone.
+        for (const kernels::ElementMove& move : change.moves) {
+            if (move.after[0] >= 0) changes_->for_each_place(pattern_, numbering, move.after, take_mass);
         }
     }
+    blocks.clear();
+    for (std::size_t block = 0; block < is_changed.size(); ++block) {
+        if (is_changed[block]) blocks.push_back(static_cast<int>(block));
+    }
+    return true;
 }
 
 template <class Real>
@@ -77,7 +124,8 @@ kernels::RowArguments<Real> BlockMatrix<Real>::arguments() const noexcept {
 
 template <class Real>
 std::size_t BlockMatrix<Real>::bytes() const noexcept {
-    return pattern_.bytes() + kernels::heap_bytes(values_) + kernels::heap_bytes(entry_mass_);
+    return pattern_.bytes() + kernels::heap_bytes(values_) + kernels::heap_bytes(entry_mass_) +
+           (changes_ ? changes_->bytes() : 0);
 }
 
 template <class Real>
@@ -87,6 +135,11 @@ RowOperator<Real>::RowOperator(OperatorKind kind, ElasticElements<Real>& element
       matrix_(kind == OperatorKind::edge_blocks ? RowContent::upper_edges : RowContent::full_rows, elements,
               definition) {
     this->set_plan(matrix_.pattern().scatter);
+}
+
+template <class Real>
+bool RowOperator<Real>::change(const LayoutChange& change) {
+    return Operator<Real>::change(change) && matrix_.change(change, changed_blocks_);
 }
 
 template <class Real>

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "lancet/kernels/layout/row_pattern.hpp"
 #include "lancet/runtime/solve/operator.hpp"
 
@@ -14,6 +17,10 @@ class BlockMatrix {
     /// values = stiffness_factor K (+ mass_factor M where the definition's mass is consistent) for every block stored.
     void assemble(Scheduler& scheduler, double stiffness_factor, double mass_factor);
 
+    /// Takes up elements that have changed, after the elements themselves have; of content upper_edges only. False
+    /// where there is no room. `blocks` receives the blocks of rows that have changed.
+    bool change(const LayoutChange& change, std::vector<int>& blocks);
+
     const kernels::RowPattern& pattern() const noexcept { return pattern_; }
     const Real* values() const noexcept { return values_.data(); }
     std::span<Real> values() noexcept { return values_; }
@@ -22,9 +29,11 @@ class BlockMatrix {
 
   private:
     void set_entry_mass(double mass_factor);
+    Real mass_at(std::size_t entry, std::size_t lane) const;
 
     ElasticElements<Real>* elements_;
     kernels::RowPattern pattern_;
+    std::optional<kernels::RowPatternChanges> changes_;  ///< once there has been one
     MassKind mass_;
     double entry_mass_factor_ = 0;
     kernels::AlignedVector<Real> values_;      ///< [entry][9][lane]
@@ -45,6 +54,10 @@ class RowOperator final : public Operator<Real> {
     std::size_t bytes() const noexcept override;
     Work work() const noexcept override;
 
+    bool change(const LayoutChange& change) override;
+    /// The blocks of rows that the last change has changed.
+    const std::vector<int>& changed_blocks() const noexcept { return changed_blocks_; }
+
     BlockMatrix<Real>& matrix() noexcept { return matrix_; }
 
   private:
@@ -52,6 +65,7 @@ class RowOperator final : public Operator<Real> {
 
     OperatorKind kind_;
     BlockMatrix<Real> matrix_;
+    std::vector<int> changed_blocks_;
 };
 
 }  // namespace lancet::runtime
