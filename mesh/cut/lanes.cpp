@@ -5,6 +5,7 @@
 #include <map>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/mesh/cut/element_lanes.hpp"
 
 namespace lancet::mesh {
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "lancet/mesh/cut/cut_mesh.hpp"
-#include "lancet/mesh/cut/front_opening.hpp"
 
 namespace lancet::mesh {
 
@@ -44,9 +43,6 @@ struct Lanes {
 };
 
 Lanes lanes(const CutMesh& cut, Fronts fronts = Fronts::sharp);
-/// Those of one element. `pieces` are what blended fronts make of it, nullptr where none is near.
-std::vector<Lanes::Lane> lanes_of_element(const CutMesh& cut, std::int32_t element,
-                                          const std::vector<FrontOpening::Piece>* pieces);
 
 /// Takes lanes that have less than `floor` of their element as if they had so much of it: all their moments grow in
 /// proportion, so that centres stay. Stiffness and mass are then no smaller than `floor` of an element's, which methods

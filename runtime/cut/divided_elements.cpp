@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "lancet/mesh/cut/element_lanes.hpp"
 #include "lancet/runtime/cut/divided_scene.hpp"
 
 namespace lancet::runtime {
