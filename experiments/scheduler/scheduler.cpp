@@ -46,7 +46,8 @@ ExitCode body(int argc, const char* const* argv) {
         met.print(std::cout);
         std::cout << '\n';
     }
-    std::cout << "Verdict (two forms differ if all repetitions of one are faster than all of the other)\n";
+    std::cout << "Verdict (two forms differ if all repetitions of one are faster than all of the other, and by "
+              << format_number(resolution_percent, 2) << " %)\n";
     for (const std::string& line : lines) std::cout << "- " << line << '\n';
     std::cout << "Load of the machine over the minute before: " << format_number(stamp.load_average[0], 3) << " on "
               << stamp.cores_allowed << " cores\n";

@@ -45,7 +45,8 @@ std::string ranking(std::vector<const Measured*> rows) {
         if (row == &best) continue;
         const double behind = 100 * (row->to_serial.middle / best.to_serial.middle - 1);
         const std::string text = plain_name(row->form) + " (+" + format_number(behind, 2) + " %)";
-        (overlap(row->to_serial, best.to_serial) ? ties : slower).push_back(text);
+        const bool is_tie = behind < resolution_percent || overlap(row->to_serial, best.to_serial);
+        (is_tie ? ties : slower).push_back(text);
     }
     std::string text = std::to_string(best.elements) + " elements, threads: " + std::to_string(best.threads) + ", " +
                        plain_name(best.extras) + ": ";

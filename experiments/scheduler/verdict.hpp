@@ -8,6 +8,10 @@
 
 namespace lancet::experiments::scheduler {
 
+/// Forms that differ by less are not told apart: on one thread the serial step and the loops of any scheduler are the
+/// same code, and differ by up to 2 % by where their arrays happen to lie.
+inline constexpr double resolution_percent = 2;
+
 /// One of the aims for the speed of a step, and what became of it.
 struct Target {
     std::string what{};
@@ -28,7 +32,8 @@ struct Target {
 std::vector<Target> targets(std::span<const Measured> rows);
 
 /// What follows from the rows: for each bar, number of threads and extras which form is the fastest, and which of the
-/// others differ from it by less than repetitions differ among each other; then the targets; then bits.
+/// others differ from it by less than the resolution, or than repetitions differ among each other; then the targets;
+/// then bits.
 std::vector<std::string> verdict(std::span<const Measured> rows, std::span<const Target> targets);
 
 }  // namespace lancet::experiments::scheduler

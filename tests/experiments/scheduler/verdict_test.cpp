@@ -39,6 +39,14 @@ TEST(Verdict, AFormThatIsAlwaysFasterIsTheFastest) {
     EXPECT_THAT(verdict(rows, {})[0], AllOf(HasSubstr("fastest is the flow graph"), Not(HasSubstr("noise"))));
 }
 
+TEST(Verdict, WhatTheSameCodeMayDifferByIsNoise) {
+    const std::vector rows{row("serial", {1, 1, 1}, Extras::nothing, 1),
+                           row("loops", {0.98, 0.985, 0.99}, Extras::nothing, 1),
+                           row("openmp-loops", {1.02, 1.03, 1.04}, Extras::nothing, 1)};
+    EXPECT_THAT(verdict(rows, {})[0],
+                AllOf(HasSubstr("within the noise of the serial step (+1.5 %)"), HasSubstr("slower: loops on OpenMP")));
+}
+
 TEST(Verdict, SaysWhereBitsDiffer) {
     std::vector rows{row("graph", {0.4, 0.42, 0.49})};
     rows[0].bit_identical = false;
