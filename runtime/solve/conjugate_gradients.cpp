@@ -86,7 +86,8 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
 }
 
 template <class Real, class Accumulate>
-double ConjugateGradients<Real, Accumulate>::largest_correction(Scheduler& scheduler, std::span<const Accumulate> x) {
+typename ConjugateGradients<Real, Accumulate>::Corrections ConjugateGradients<Real, Accumulate>::corrections(
+    Scheduler& scheduler, std::span<const Accumulate> x) {
     // The sums of products have been taken: their places are free.
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         double correction = 0, solution = 0;
@@ -98,9 +99,50 @@ double ConjugateGradients<Real, Accumulate>::largest_correction(Scheduler& sched
         r_dot_z_[static_cast<std::size_t>(block)] = correction;
         r_dot_r_[static_cast<std::size_t>(block)] = solution;
     });
-    const double correction = *std::max_element(r_dot_z_.begin(), r_dot_z_.end());
-    const double solution = *std::max_element(r_dot_r_.begin(), r_dot_r_.end());
-    return correction == 0 ? 0 : correction / solution;
+    return {*std::max_element(r_dot_z_.begin(), r_dot_z_.end()), *std::max_element(r_dot_r_.begin(), r_dot_r_.end())};
+}
+
+template <class Real, class Accumulate>
+bool ConjugateGradients<Real, Accumulate>::correct_thin_nodes(Scheduler& scheduler, Operator<Real>& matrix,
+                                                              const ConstraintFilter& filter, std::span<Accumulate> x,
+                                                              double limit, double r_dot_z) {
+    const auto for_block_nodes = [&](int block, const auto& body) {
+        const auto end = static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (auto node = static_cast<std::size_t>(numbering_->block_begin[block]); node < end; ++node) {
+            const std::size_t at = 4 * node;
+            const Real largest = std::max({std::abs(z_[at]), std::abs(z_[at + 1]), std::abs(z_[at + 2])});
+            body(at, static_cast<double>(largest) > limit);
+        }
+    };
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        double sum = 0;
+        for_block_nodes(block, [&](std::size_t at, bool wants_more) {
+            for (std::size_t i = at; wants_more && i < at + 3; ++i) {
+                sum += static_cast<double>(r_[i]) * static_cast<double>(z_[i]);
+            }
+        });
+        r_dot_z_[static_cast<std::size_t>(block)] = sum;
+    });
+    const double downhill = sum_in_order(std::span<const double>(r_dot_z_));
+    constexpr double invisible = 0.01;
+    if (!(downhill > 0) || downhill > invisible * r_dot_z) return false;
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for_block_nodes(block, [&](std::size_t at, bool wants_more) {
+            if (!wants_more) std::fill_n(&z_[at], 3, Real(0));
+        });
+    });
+    const double curvature = matrix.product(scheduler, z_.data());
+    const auto alpha = static_cast<Accumulate>(curvature > 0 ? downhill / curvature : 0);
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        matrix.merge(block);
+        filter.apply(matrix.buffer(), block);
+        const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
+        for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
+            x[i] += alpha * static_cast<Accumulate>(z_[i]);
+            r_[i] -= alpha * static_cast<Accumulate>(matrix.buffer()[i]);
+        }
+    });
+    return true;
 }
 
 template <class Real, class Accumulate>
@@ -164,13 +206,29 @@ ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
     };
     result.residual = relative(products.r_dot_z);
     double previous_r_dot_z = 0, previous_alpha = 0;
+    bool is_start = true;
+    int steps_of_thin_nodes = 0;
     while (result.iterations < settings.iterations) {
         if (products.r_dot_z == 0) break;
-        if (result.residual < settings.tolerance && largest_correction(scheduler, x) <= settings.tolerance) break;
+        if (result.residual < settings.tolerance) {
+            const Corrections now = corrections(scheduler, x);
+            const double limit = settings.tolerance * now.solution;
+            if (now.correction <= limit) break;
+            constexpr int most = 8;  // nodes that hang together are for conjugate gradients
+            if (steps_of_thin_nodes < most &&
+                correct_thin_nodes(scheduler, matrix, filter, x, limit, products.r_dot_z)) {
+                ++steps_of_thin_nodes;
+                ++result.iterations;
+                products = precondition(scheduler, preconditioner, filter);
+                result.residual = relative(products.r_dot_z);
+                is_start = true;
+                continue;
+            }
+        }
         const double z_dot_az = matrix.product(scheduler, z_.data());
-        const double beta = result.iterations == 0 ? 0 : products.r_dot_z / previous_r_dot_z;
-        const double curvature =
-            result.iterations == 0 ? z_dot_az : z_dot_az - beta * products.r_dot_z / previous_alpha;
+        const double beta = is_start ? 0 : products.r_dot_z / previous_r_dot_z;
+        const double curvature = is_start ? z_dot_az : z_dot_az - beta * products.r_dot_z / previous_alpha;
+        is_start = false;
         if (!(curvature > 0) || !(products.r_dot_z > 0) || !std::isfinite(curvature)) {
             result.broke_down = true;
             break;

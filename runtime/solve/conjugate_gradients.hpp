@@ -60,8 +60,20 @@ class ConjugateGradients {
     Products advance(Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner,
                      const ConstraintFilter& filter, double alpha, double beta);
     Products sum_products() const noexcept;
-    /// The largest entry of z over that of x.
-    double largest_correction(Scheduler& scheduler, std::span<const Accumulate> x);
+    /// The largest entries of z and of x.
+    struct Corrections {
+        double correction = 0, solution = 0;
+    };
+    Corrections corrections(Scheduler& scheduler, std::span<const Accumulate> x);
+    /// Goes along z, but only at nodes where it is larger than `limit`, to where the energy is lowest, if those nodes
+    /// have next to none of it (of r . z); returns whether they do. z is then to be computed anew.
+    ///
+    /// Conjugate gradients reduce the energy of the error, and thin parts of a volume fraction v have only v of it: the
+    /// polynomial in the matrix that they build is small at the eigenvalues of the rest, and takes half as many
+    /// iterations again to be small between them, where those of thin parts lie. Yet nothing hangs on thin parts: with
+    /// the rest at rest, what their own blocks of the matrix say is right but for what thin parts say to each other.
+    bool correct_thin_nodes(Scheduler& scheduler, Operator<Real>& matrix, const ConstraintFilter& filter,
+                            std::span<Accumulate> x, double limit, double r_dot_z);
 
     const kernels::VectorKernels<Real, Accumulate>* kernels_;
     const kernels::NodeNumbering* numbering_;
