@@ -34,7 +34,7 @@ ExitCode body(int argc, const char* const* argv) {
     const Table table = gain_table(items, gains), others = remark_table(remarks());
     std::cout << "What is skipped where a scene does not need it; one thread, both taken in turns\n";
     table.print(std::cout);
-    std::cout << "\nRatio: of the same units, skipped over done; median, lowest and highest of "
+    std::cout << "\nRatio: of lower quartiles, skipped over done; median, lowest and highest of "
               << settings->repetitions
               << " repetitions. Error: rms of\nthe difference of positions at the end. Load of the machine: "
               << format_number(stamp.load_average[0], 3) << " on " << stamp.cores_allowed << " cores\n\n";
