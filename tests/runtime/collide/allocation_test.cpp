@@ -20,15 +20,16 @@ constinit std::atomic<long> allocations{0};  // NOLINT(cppcoreguidelines-avoid-n
 }  // namespace
 
 // Everything in these folders is in standard containers, whose memory is from here.
-void* operator new(std::size_t bytes) {
+// Never inline: beside a new that is not inline either, the compiler takes the free for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t bytes) {
     ++allocations;
     if (void* memory = std::malloc(bytes > 0 ? bytes : 1)) return memory;
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
 
