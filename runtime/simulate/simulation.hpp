@@ -26,11 +26,11 @@ enum class FramePolicy {
 };
 
 struct SimulationOptions {
-    double time_step = 0.04;                     ///< s, of the world: a whole multiple of each body's
-    std::array<double, 3> gravity{0, -9.81, 0};  ///< m / s^2
-    double frame_rate = 30;                      ///< Hz of simulated time
-    double collision_rate = 200;                 ///< Hz of simulated time
-    BroadPhaseKind broad_phase = BroadPhaseKind::aabb_tree;
+    double time_step = 0.04;                                 ///< s, of the world: a whole multiple of each body's
+    std::array<double, 3> gravity{0, -9.81, 0};              ///< m / s^2
+    double frame_rate = 30;                                  ///< Hz of simulated time
+    double collision_rate = 200;                             ///< Hz of simulated time
+    BroadPhaseKind broad_phase = BroadPhaseKind::aabb_tree;  ///< of bodies, and of more than one tool
     FramePolicy frames = FramePolicy::drop;
     /// Surfaces, frames and collision work on the state that a step starts from, beside its solve; what they find acts
     /// in the step after. Without it they follow on the solve.

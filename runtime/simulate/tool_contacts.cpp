@@ -57,7 +57,9 @@ void Simulation::find_tool_contacts() {
         found.clear();
     }
     if (!collision_is_due_) return;
-    while (touchable_.size() < bodies_.size()) touchable_.emplace_back(options_.broad_phase);
+    // Refitting a tree costs more than asking every box for one tool.
+    const BroadPhaseKind kind = tools_.size() > 1 ? options_.broad_phase : BroadPhaseKind::brute_force;
+    while (touchable_.size() < bodies_.size()) touchable_.emplace_back(kind);
     for (const auto& tool : tools_) {
         // A tool that has gone through everything is not on its way from anywhere.
         if (!tool->is_felt()) {

@@ -17,11 +17,16 @@ class TouchableSurface {
 
     /// Takes up where the body's nodes are.
     void update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes);
-    /// The contacts of a tool that has moved; valid until the next call.
+    /// The contacts of a tool that has moved; valid until the next call. Looks at single triangles only where the tool
+    /// comes into the box around all.
     std::span<const ToolContact> contacts(const CarriedSurface& surface, const ToolMotion& motion);
 
   private:
+    void update_boxes(const CarriedSurface& surface);
+
     std::int64_t version_ = -1;
+    bool boxes_are_old_ = true;
+    Box box_{};  ///< around all vertices
     std::vector<Point> positions_;
     std::vector<Box> boxes_;
     std::unique_ptr<BroadPhase> triangles_near_;
