@@ -164,7 +164,8 @@ void CoarseSpace<Real>::take_up_aggregates() {
     restricted_.assign(static_cast<std::size_t>(unknowns), 0.0);
     correction_.assign(restricted_.size(), Real(0));
     m.diagonal.resize(static_cast<std::size_t>(aggregates));
-    m.inside.resize(m.diagonal.size() * kernels::coarse_diagonal_sums);
+    // Padding of the room is of an aggregate that may not be there yet.
+    m.inside.resize(static_cast<std::size_t>(numbering_->aggregates()) * kernels::coarse_diagonal_sums);
     m.basis.resize(m.diagonal.size());
     m.scale.resize(unknowns);
     m.right_hand_side.resize(unknowns);
