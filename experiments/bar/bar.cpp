@@ -51,21 +51,13 @@ void add_options(CLI::App& app, Options& options) {
     add_shared_options(app, options.shared, {.scalars = {"float", "mixed", "double"}});
     app.add_flag("--original", options.original, "Only the original setting: 10 iterations, no preconditioner");
     app.add_flag("--accurate", options.accurate, "Only what reaches an error of 0.5 % at t = 1 s");
-    const auto add_words = [&app](const std::string& option, std::vector<std::string>& target,
-                                  const std::vector<std::string>& choices, const std::string& what) {
-        app.add_option_function<std::string>(
-               option,
-               [option, &target, choices](const std::string& text) { target = parse_words(option, text, choices); },
-               what)
-            ->type_name("LIST");
-    };
-    add_words("--operator", options.operators, {"matrix-free", "edge-blocks", "block-rows"},
-              "Operators of lancet, a list out of: matrix-free, edge-blocks, block-rows");
+    add_words(app, "--operator", options.operators, {"matrix-free", "edge-blocks", "block-rows"},
+              "Operators of lancet");
     std::vector<std::string> methods;
     for (const Entry& entry : entries()) {
         if (std::find(methods.begin(), methods.end(), entry.method) == methods.end()) methods.push_back(entry.method);
     }
-    add_words("--method", options.methods, methods, "Only these methods");
+    add_words(app, "--method", options.methods, methods, "Only these methods");
     app.add_option("--repetitions", options.repetitions, "Runs of every row, interleaved")->check(CLI::Range(1, 1000));
     app.add_flag("--no-errors", options.no_errors, "Measure times only; converged solutions of large meshes are slow");
     app.add_option("--pvd", options.pictures, "Write the motion of every row to FOLDER, for ParaView")

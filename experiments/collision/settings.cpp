@@ -12,21 +12,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-void add_words(CLI::App& app, const std::string& option, Words& target, const Words& choices, const std::string& what) {
-    std::string all;
-    for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
-    app.add_option_function<std::string>(
-           option, [option, &target, choices](const std::string& text) { target = parse_words(option, text, choices); },
-           what + ", a list out of: " + all)
-        ->type_name("LIST");
-}
-
-template <class Value>
-Value only(const std::vector<Value>& list, const Value& otherwise, const std::string& option) {
-    if (list.size() > 1) throw Error(option + ": this experiment measures one at a time, expected one entry");
-    return list.empty() ? otherwise : list.front();
-}
-
 }  // namespace
 
 std::optional<CollisionSettings> parse_settings(int argc, const char* const* argv) {

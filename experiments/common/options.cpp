@@ -81,17 +81,17 @@ std::vector<std::string> parse_words(std::string_view option, std::string_view t
     return words;
 }
 
+void add_words(CLI::App& app, const std::string& option, std::vector<std::string>& target,
+               const std::vector<std::string>& choices, const std::string& what) {
+    app.add_option_function<std::string>(
+           option, [option, &target, choices](const std::string& text) { target = parse_words(option, text, choices); },
+           what + ", a list out of: " + join(choices))
+        ->type_name("LIST");
+}
+
 void add_shared_options(CLI::App& app, SharedOptions& options, const Choices& choices) {
     app.add_flag("--quick", options.quick, "A short run that shows that everything works");
 
-    const auto add_words = [&app](const std::string& option, std::vector<std::string>& target,
-                                  const std::vector<std::string>& allowed, const std::string& what) {
-        app.add_option_function<std::string>(
-               option,
-               [option, &target, allowed](const std::string& text) { target = parse_words(option, text, allowed); },
-               what + ", a list out of: " + join(allowed))
-            ->type_name("LIST");
-    };
     const auto add_file = [&app](const std::string& option, std::optional<std::filesystem::path>& target,
                                  const std::string& what) {
         app.add_option_function<std::string>(
@@ -109,9 +109,9 @@ void add_shared_options(CLI::App& app, SharedOptions& options, const Choices& ch
            "--threads", [&options](const std::string& text) { options.threads = parse_counts("--threads", text); },
            "Thread counts, a list such as 1,2")
         ->type_name("LIST");
-    add_words("--scheduler", options.schedulers, choices.schedulers, "Schedulers");
-    add_words("--isa", options.instruction_sets, choices.instruction_sets, "Instruction sets");
-    add_words("--scalar", options.scalars, choices.scalars, "Scalar types");
+    add_words(app, "--scheduler", options.schedulers, choices.schedulers, "Schedulers");
+    add_words(app, "--isa", options.instruction_sets, choices.instruction_sets, "Instruction sets");
+    add_words(app, "--scalar", options.scalars, choices.scalars, "Scalar types");
     add_file("--json", options.json, "Write the results to FILE as JSON");
     add_file("--csv", options.csv, "Write the table to FILE as comma-separated values");
 }

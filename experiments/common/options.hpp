@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "lancet/kernels/error.hpp"
+
 namespace CLI {
 class App;
 }
@@ -35,6 +37,19 @@ struct SharedOptions {
 /// Parsing throws lancet::Error for a list that is empty, repeats an entry or holds one that is not among `choices`,
 /// and for a result file whose folder does not exist.
 void add_shared_options(CLI::App& app, SharedOptions& options, const Choices& choices = {});
+
+/// Adds an option for a comma-separated list out of `choices`, which its help shows after `what`; parse_words() reads
+/// it. `target` must outlive the parse.
+void add_words(CLI::App& app, const std::string& option, std::vector<std::string>& target,
+               const std::vector<std::string>& choices, const std::string& what);
+
+/// The entry of a list that may have one, or `otherwise` where it has none: for experiments that measure one at a time.
+/// Throws lancet::Error, naming `option`, for more.
+template <class Value>
+[[nodiscard]] Value only(const std::vector<Value>& list, const Value& otherwise, const std::string& option) {
+    if (list.size() > 1) throw Error(option + ": this experiment takes one at a time, expected one entry");
+    return list.empty() ? otherwise : list.front();
+}
 
 /// Parses the command line. Returns false when --help was asked for and has been printed to standard output: the
 /// program then ends with success. Throws lancet::Error with one line for whatever CLI11 refuses.

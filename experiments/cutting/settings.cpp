@@ -8,15 +8,6 @@
 #include "lancet/runtime/solve/operator.hpp"
 
 namespace lancet::experiments::cutting {
-namespace {
-
-template <class Value>
-Value only(const std::vector<Value>& list, const Value& otherwise, const std::string& option) {
-    if (list.size() > 1) throw Error(option + ": this experiment measures one at a time, expected one entry");
-    return list.empty() ? otherwise : list.front();
-}
-
-}  // namespace
 
 const std::vector<std::string>& scene_names() {
     static const std::vector<std::string> names{"dissected-beam", "organ",       "scalpel",     "cost",
@@ -29,17 +20,8 @@ std::optional<CuttingSettings> parse_settings(int argc, const char* const* argv)
     CLI::App app("Cutting: what a cut costs, what it gets wrong, and what it looks like");
     add_shared_options(app, settings.shared, {.scalars = {"float", "mixed", "double"}});
     const std::vector<std::string> operators{"edge-blocks", "matrix-free", "block-rows"};
-    const auto words = [&app](const std::string& name, std::vector<std::string>& list,
-                              const std::vector<std::string>& choices, const std::string& what) {
-        std::string all;
-        for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
-        app.add_option_function<std::string>(
-               name, [name, &list, choices](const std::string& text) { list = parse_words(name, text, choices); },
-               what + " out of: " + all)
-            ->type_name("LIST");
-    };
-    words("--scene", settings.scenes, scene_names(), "Only these scenes, a list");
-    words("--operator", settings.operators, operators, "How the step matrix is kept, a list");
+    add_words(app, "--scene", settings.scenes, scene_names(), "Only these scenes");
+    add_words(app, "--operator", settings.operators, operators, "How the step matrix is kept");
     std::filesystem::path mesh;
     std::optional<double> scale;
     app.add_option("--mesh", mesh, "Tetrahedral mesh of the scene organ; default: a generated one")->type_name("FILE");

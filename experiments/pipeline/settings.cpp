@@ -6,15 +6,6 @@
 #include "lancet/runtime/observe/machine.hpp"
 
 namespace lancet::experiments::pipeline {
-namespace {
-
-template <class Value>
-Value only(const std::vector<Value>& list, const Value& otherwise, const std::string& option) {
-    if (list.size() > 1) throw Error(option + ": this experiment runs one at a time, expected one entry");
-    return list.empty() ? otherwise : list.front();
-}
-
-}  // namespace
 
 std::optional<PipelineSettings> parse_settings(int argc, const char* const* argv) {
     PipelineSettings settings;

@@ -16,15 +16,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-void add_words(CLI::App& app, const std::string& option, Words& target, const Words& choices, const std::string& what) {
-    std::string all;
-    for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
-    app.add_option_function<std::string>(
-           option, [option, &target, choices](const std::string& text) { target = parse_words(option, text, choices); },
-           what + ", a list out of: " + all)
-        ->type_name("LIST");
-}
-
 /// The schedulers of several threads that are compiled in, without the one that exists for tests.
 Words parallel_schedulers() {
     Words names;

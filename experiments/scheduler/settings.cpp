@@ -18,11 +18,6 @@ std::vector<std::string> size_words() {
     return words;
 }
 
-std::string only(const std::vector<std::string>& list, const std::string& option) {
-    if (list.size() > 1) throw Error(option + ": this experiment measures one at a time, expected one entry");
-    return list.empty() ? std::string() : list.front();
-}
-
 }  // namespace
 
 WorkerJob job_for(int elements, const SchedulerSettings& settings) {
@@ -82,11 +77,11 @@ std::optional<SchedulerSettings> parse_settings(int argc, const char* const* arg
     if (has_serial_only && std::ranges::find(settings.threads, 1) == settings.threads.end()) {
         throw Error("--threads: the serial scheduler has one thread, expected 1 among them");
     }
-    if (const std::string isa = only(settings.shared.instruction_sets, "--isa"); !isa.empty()) {
+    if (const std::string isa = only(settings.shared.instruction_sets, std::string(), "--isa"); !isa.empty()) {
         settings.body.instruction_set = kernels::instruction_set_from_string(isa);
         kernels::require(settings.body.instruction_set);
     }
-    if (const std::string scalar = only(settings.shared.scalars, "--scalar"); !scalar.empty()) {
+    if (const std::string scalar = only(settings.shared.scalars, std::string(), "--scalar"); !scalar.empty()) {
         settings.body.scalar = runtime::scalar_mode_from_string(scalar);
     }
     if (is_worker) {

@@ -59,14 +59,8 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--worker", options.worker, "Run these cases for another process")->group("");
 }
 
-/// The one word of a list that may have one.
-std::string only(const char* option, const std::vector<std::string>& words) {
-    if (words.size() > 1) throw Error(std::string(option) + ": expected one, found " + std::to_string(words.size()));
-    return words.empty() ? "" : words.front();
-}
-
 std::unique_ptr<runtime::Scheduler> scheduler_of(const SharedOptions& shared) {
-    const std::string name = only("--scheduler", shared.schedulers);
+    const std::string name = only(shared.schedulers, std::string(), "--scheduler");
     const auto kind = name.empty() ? runtime::SchedulerKind::serial : runtime::scheduler_from_string(name);
     return runtime::make_scheduler(kind, kind == runtime::SchedulerKind::serial ? 1 : 2);
 }
@@ -95,7 +89,7 @@ ExitCode body(int argc, const char* const* argv) {
     if (!parse_command_line(app, argc, argv)) return ExitCode::success;
     options.selection.quick = options.shared.quick;
     options.selection.scalars = options.shared.scalars;
-    const std::string instruction_set = only("--isa", options.shared.instruction_sets);
+    const std::string instruction_set = only(options.shared.instruction_sets, std::string(), "--isa");
     if (!instruction_set.empty()) kernels::require(kernels::instruction_set_from_string(instruction_set));
     if (!options.case_name.empty()) {
         if (!instruction_set.empty()) throw Error("--isa: with --case, set the environment variable LANCET_ISA");

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "lancet/experiments/cutting/beam_reference.hpp"
 #include "lancet/experiments/common/organ_mesh.hpp"
+#include "lancet/experiments/cutting/beam_reference.hpp"
 #include "lancet/experiments/cutting/run.hpp"
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/boundary.hpp"
