@@ -55,7 +55,9 @@ class DividedComponents::Fronts {
                 // A few nodes at a time: fronts that are next to each other meet at once.
                 for (int k = 0; k < 8 && group_[front] == front && !fronts_[front].next.empty(); ++k) advance(front);
                 if (group_[front] != front || !fronts_[front].next.empty()) continue;
-                --open_[fronts_[front].component];
+                int& open = open_[fronts_[front].component];
+                if (open < 2) continue;  // the last has met all others: nothing has come off
+                --open;
                 group_[front] = -1;
                 closed.push_back(std::move(fronts_[front].passed));
             }

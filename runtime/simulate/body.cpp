@@ -13,6 +13,7 @@
 #include "lancet/runtime/integrate/floor_contact.hpp"
 #include "lancet/runtime/integrate/holds.hpp"
 #include "lancet/runtime/integrate/implicit_step.hpp"
+#include "lancet/runtime/simulate/changed_layout.hpp"
 #include "lancet/runtime/simulate/loads.hpp"
 #include "lancet/runtime/simulate/scene_layout.hpp"
 #include "lancet/runtime/solve/critical_step.hpp"
@@ -180,24 +181,26 @@ class BodyOf final : public DeformableBody {
         if (!numbering_.has_room() || is_by_rows || settings_.scatter != kernels::ScatterStrategy::private_copies) {
             return false;
         }
-        std::vector<std::int32_t> numbers;
+        ChangedLayout<Real> changed(change, numbering_, spare_nodes_, elements_, rest_position_);
         LayoutChange layout;
-        if (!number(change, numbers) || !lay_out(change, numbers, layout)) return false;
+        if (!changed.number_nodes() || !changed.lay_out_elements(layout)) return false;
+        element_count_ =
+            static_cast<std::size_t>(static_cast<std::ptrdiff_t>(element_count_) + changed.more_elements());
+        const std::span<const std::int32_t> numbers = changed.numbers();
         std::vector<std::int32_t> gone;
         for (std::size_t user = static_cast<std::size_t>(change.first_node); user < nodes(); ++user) {
             const std::int32_t node = numbering_.internal_of_user[user];
             if (std::find(numbers.begin(), numbers.end(), node) == numbers.end()) gone.push_back(node);
         }
         for (const std::int32_t node : gone) layout.masses.push_back({.node = node});
-        const auto internal = [&](std::int32_t node) { return number_of(change, numbers, node); };
-        for (const BodyChange::NodalMass& changed : change.masses) {
+        for (const BodyChange::NodalMass& of_node : change.masses) {
             LayoutChange::NodalMass& mass = layout.masses.emplace_back();
-            mass.node = internal(changed.node);
-            mass.mass = changed.mass;
-            for (const auto& [node, pair] : changed.row) mass.row.emplace_back(internal(node), pair);
+            mass.node = changed.number_of(of_node.node);
+            mass.mass = of_node.mass;
+            for (const auto& [node, pair] : of_node.row) mass.row.emplace_back(changed.number_of(node), pair);
         }
         if (!step_->change(layout)) return false;
-        for (const LayoutChange::NodalMass& changed : layout.masses) mass_[changed.node] = changed.mass;
+        for (const LayoutChange::NodalMass& of_node : layout.masses) mass_[of_node.node] = of_node.mass;
         holds_.release_all();
         for (const std::int32_t node : gone) give_back(node);
         take_nodes(change, numbers);
@@ -464,85 +467,6 @@ class BodyOf final : public DeformableBody {
             std::copy_n(&nodal[4 * static_cast<std::size_t>(numbering_.internal_of_user[node])], 3,
                         values[node].begin());
         }
-    }
-
-    /// The internal number of a node of the body that a change makes.
-    std::int32_t number_of(const BodyChange& change, std::span<const std::int32_t> numbers, std::int32_t node) const {
-        return node < change.first_node ? numbering_.internal_of_user[node]
-                                        : numbers[static_cast<std::size_t>(node - change.first_node)];
-    }
-
-    /// Gives new nodes internal numbers and their places at rest. False where there is no room.
-    bool number(const BodyChange& change, std::vector<std::int32_t>& numbers) {
-        numbers.reserve(change.nodes.size());
-        for (const BodyChange::Node& node : change.nodes) {
-            numbers.push_back(node.before < 0 ? -1 : numbering_.internal_of_user[node.before]);
-        }
-        const auto take = [&](std::size_t place, std::span<const std::int32_t> neighbours) {
-            const BodyChange::Node& node = change.nodes[place];
-            const auto user = change.first_node + static_cast<std::int32_t>(place);
-            numbers[place] = spare_nodes_.take(numbering_, user, node.is_fixed, neighbours);
-            if (numbers[place] < 0) return false;
-            std::copy_n(node.rest.begin(), 3, &rest_position_[4 * static_cast<std::size_t>(numbers[place])]);
-            return true;
-        };
-        // Along elements, so that neighbours are known.
-        for (const BodyChange::Element& element : change.elements) {
-            if (!element.is_there) continue;
-            kernels::Tetrahedron known{};
-            for (std::size_t k = 0; k < 4; ++k) known[k] = number_of(change, numbers, element.nodes[k]);
-            for (std::size_t k = 0; k < 4; ++k) {
-                if (known[k] >= 0) continue;
-                const auto place = static_cast<std::size_t>(element.nodes[k] - change.first_node);
-                if (!take(place, known)) return false;
-                known[k] = numbers[place];
-            }
-        }
-        // A copy may have no element yet.
-        for (std::size_t place = 0; place < numbers.size(); ++place) {
-            if (numbers[place] < 0 && !take(place, {})) return false;
-        }
-        return true;
-    }
-
-    bool lay_out(const BodyChange& change, std::span<const std::int32_t> numbers, LayoutChange& layout) {
-        std::vector<std::int32_t>& slots = elements_.slot_of_element();
-        const auto changed_slot = [&](const BodyChange::Element& element) -> std::int32_t& {
-            const auto number = static_cast<std::size_t>(element.element);
-            if (number >= slots.size()) slots.resize(number + 1, -1);
-            return slots[number];
-        };
-        for (const BodyChange::Element& element : change.elements) {
-            std::int32_t& slot = changed_slot(element);
-            kernels::ElementMove move;
-            if (slot >= 0) move.before = nodes_of_slot(elements_.batches(), slot);
-            if (slot < 0) ++element_count_;
-            if (!element.is_there) --element_count_;
-            if (!element.is_there) {
-                move.slot = slot;
-                if (!elements_.change(slot, nullptr, -1)) return false;
-                slot = -1;
-                layout.moves.push_back(move);
-                continue;
-            }
-            kernels::ChangedElement laid_out{.nodes = {},
-                                             .geometry = {},
-                                             .material = element.material,
-                                             .fraction = element.fraction,
-                                             .pair_masses = element.pair_masses};
-            std::array<Point, 4> corners{};
-            for (std::size_t k = 0; k < 4; ++k) {
-                laid_out.nodes[k] = number_of(change, numbers, element.nodes[k]);
-                std::copy_n(&rest_position_[4 * static_cast<std::size_t>(laid_out.nodes[k])], 3, corners[k].begin());
-            }
-            laid_out.geometry = kernels::tetrahedron_geometry(corners, {0, 1, 2, 3});
-            if (!elements_.change(slot, &laid_out, element.like < 0 ? -1 : slots[element.like])) return false;
-            move.slot = slot;
-            move.after = laid_out.nodes;
-            layout.moves.push_back(move);
-        }
-        elements_.finish_changes(rest_position_.data());
-        return true;
     }
 
     void give_back(std::int32_t node) {

@@ -75,17 +75,18 @@ CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& h
 void SimulatedBody::renew_surface(bool is_solid) {
     const bool is_cut = cuttable_ && cuts_ > 0;
     const mesh::TetMesh& mesh = definition_.scene.mesh;
-    std::shared_ptr<CarriedSurface> surface;
+    mesh::PartGeometry geometry;
+    if (is_cut && (is_solid || !fine_)) geometry = part_geometry(cuttable_->mesh());
+    auto surface = std::make_shared<CarriedSurface>();
     if (fine_) {
         if (is_cut) fine_->update(cuttable_->mesh());
-        surface = std::make_shared<CarriedSurface>(carried_surface(*fine_));
+        *surface = carried_surface(*fine_);
     } else {
-        surface =
-            std::make_shared<CarriedSurface>(is_cut ? boundary_surface(cuttable_->mesh()) : boundary_surface(mesh));
+        *surface = is_cut ? boundary_surface(cuttable_->mesh(), geometry) : boundary_surface(mesh);
     }
     if (is_solid) {
-        surface->solid =
-            std::make_shared<const CarriedSolid>(is_cut ? carried_solid(cuttable_->mesh()) : carried_solid(mesh));
+        surface->solid = std::make_shared<const CarriedSolid>(is_cut ? carried_solid(cuttable_->mesh(), geometry)
+                                                                     : carried_solid(mesh));
     }
     surface->version = surface_ ? surface_->version + 1 : 0;
     surface_ = std::move(surface);

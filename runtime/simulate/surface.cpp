@@ -1,10 +1,8 @@
 #include "lancet/runtime/simulate/surface.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "lancet/mesh/boundary.hpp"
-#include "lancet/mesh/cut/part_geometry.hpp"
 #include "lancet/mesh/embed/embedding.hpp"
 
 namespace lancet::runtime {
@@ -70,10 +68,9 @@ CarriedSurface boundary_surface(const mesh::TetMesh& mesh) {
     return surface;
 }
 
-CarriedSurface boundary_surface(const mesh::CutMesh& cut) {
-    mesh::PartGeometry geometry = mesh::part_geometry(cut);
+CarriedSurface boundary_surface(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry) {
     CarriedSurface surface;
-    surface.is_wall = std::move(geometry.is_wall);
+    surface.is_wall = geometry.is_wall;
     Renumbering vertices(geometry.points.size());
     for (mesh::Triangle triangle : geometry.triangles) {
         for (std::int32_t& corner : triangle) {
@@ -116,14 +113,13 @@ CarriedSolid carried_solid(const mesh::TetMesh& mesh) {
     return solid;
 }
 
-CarriedSolid carried_solid(const mesh::CutMesh& cut) {
-    mesh::PartGeometry geometry = mesh::part_geometry(cut);
+CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry) {
     CarriedSolid solid;
     for (const mesh::MaterialPoint& point : geometry.points) {
         solid.points.add(point, cut.parts()[static_cast<std::size_t>(point.part)]);
     }
-    solid.tetrahedra = std::move(geometry.tetrahedra);
-    solid.triangles = std::move(geometry.triangles);
+    solid.tetrahedra = geometry.tetrahedra;
+    solid.triangles = geometry.triangles;
     return solid;
 }
 

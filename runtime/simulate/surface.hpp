@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "lancet/mesh/cut/cut_mesh.hpp"
+#include "lancet/mesh/cut/part_geometry.hpp"
 #include "lancet/mesh/embed/embedded_surface.hpp"
 #include "lancet/mesh/surface/vertex_normals.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
@@ -65,11 +65,11 @@ struct SurfaceShape {
 /// The boundary of a mesh: every vertex is a node, every part an element.
 CarriedSurface boundary_surface(const mesh::TetMesh& mesh);
 /// That of a cut mesh, walls included.
-CarriedSurface boundary_surface(const mesh::CutMesh& cut);
+CarriedSurface boundary_surface(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry);
 /// A fine surface as cuts have left it.
 CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine);
 CarriedSolid carried_solid(const mesh::TetMesh& mesh);
-CarriedSolid carried_solid(const mesh::CutMesh& cut);
+CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry);
 
 /// Finds the places of points from those of the body's nodes; allocates only where there are more than before.
 void place(Scheduler& scheduler, const CarriedPoints& points, std::span<const Point> nodes, std::vector<Point>& out);

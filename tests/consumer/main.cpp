@@ -12,6 +12,7 @@
 #include "lancet/runtime/cut/cuttable_body.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/simulate/body.hpp"
+#include "lancet/runtime/simulate/simulation.hpp"
 
 namespace {
 
@@ -62,6 +63,22 @@ int use_lancet() {
     cut.step(*scheduler);
     if (cut.mesh().node_of_copy().size() <= mesh.nodes().size()) {
         std::fprintf(stderr, "a cut separated nothing\n");
+        return 1;
+    }
+    lancet::runtime::Simulation simulation(*scheduler, {.time_step = 0.02});
+    const int bar =
+        simulation.add_body({.name = "bar", .scene = scene, .settings = {.time_step = 0.02}, .can_be_cut = true});
+    const int knife = simulation.add_tool({.name = "knife",
+                                           .shape = lancet::runtime::SphereTool{.radius = 0.05},
+                                           .blade = std::array<lancet::mesh::Point, 2>{{{0, 0, -1}, {0, 0, 2}}}});
+    simulation.keep_surfaces();
+    for (const double height : {2.0, -1.0}) {
+        simulation.move(knife, {.position = {1.1, height, 0}}, lancet::runtime::ToolAction::cut);
+        simulation.step();
+    }
+    simulation.finish();
+    if (simulation.cut_statistics().copies == 0 || simulation.latest_surface(bar)->positions.empty()) {
+        std::fprintf(stderr, "a knife went through a bar and left no trace\n");
         return 1;
     }
     try {

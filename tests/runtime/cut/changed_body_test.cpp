@@ -218,6 +218,42 @@ TEST_P(ChangedBody, IsTheBodyLaidOutAnewAfterEachOfManyCuts) {
     }
 }
 
+// Small pieces are walked through in one go: what the last front has found is no piece that came off.
+TEST(ChangedComponents, AreThoseOfABodyLaidOutAnewHoweverSmallThePieces) {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+        runtime::Scene scene;
+        scene.mesh = mesh::box({.cells = {2, 2, 2}, .size = {0.2, 0.2, 0.2}});
+        const Settings settings{.scalar = ScalarMode::double_precision};
+        CuttableBody changed(scene, settings, *scheduler, {.largest_crumb = 1, .room = 1});
+        CuttableBody rebuilt(scene, settings, *scheduler, {.largest_crumb = 1, .room = 0});
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(-1, 1);
+        const auto vector = [&](double size) {
+            return Point{size * unit(random), size * unit(random), size * unit(random)};
+        };
+        std::size_t most = 0;
+        for (int round = 0; round < 20; ++round) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", cut " + std::to_string(round));
+            Point corner{0.1, 0.1, 0.1};
+            const Point first = vector(0.2), second = vector(0.2), shift = vector(0.1);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                corner[axis] += shift[axis] - 0.5 * (first[axis] + second[axis]);
+            }
+            const CutSurface surface = CutSurface::parallelogram(corner, first, second);
+            const runtime::CutUpdate update = changed.cut(*scheduler, surface, runtime::Configuration::rest),
+                                     reference = rebuilt.cut(*scheduler, surface, runtime::Configuration::rest);
+            ASSERT_EQ(update.crumbs.size(), reference.crumbs.size());
+            for (std::size_t k = 0; k < update.crumbs.size(); ++k) {
+                EXPECT_EQ(update.crumbs[k].nodes, reference.crumbs[k].nodes);
+                EXPECT_EQ(update.crumbs[k].component, reference.crumbs[k].component);
+            }
+            most = std::max(most, update.crumbs.size());
+        }
+        EXPECT_GT(most, 1U) << "nothing came off";
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bodies, ChangedBody, ::testing::ValuesIn(cases()), [](const auto& of) {
     std::string name = of.param.name;
     std::ranges::replace(name, '-', '_');
