@@ -46,8 +46,8 @@ bool CuttableBody::can_change() const {
     const bool has_fitting_layout = settings_.scatter == kernels::ScatterStrategy::private_copies &&
                                     (is_explicit(settings_.integrator) || settings_.matrix != OperatorKind::block_rows);
     const bool keeps_step = !is_explicit(settings_.integrator) || settings_.force_time_step;
-    return options_.room > 0 && options_.fronts == mesh::Fronts::sharp && options_.smallest_fraction == 0 &&
-           options_.crumbs != CrumbTreatment::drop && has_fitting_layout && keeps_step;
+    return options_.room > 0 && options_.smallest_fraction == 0 && options_.crumbs != CrumbTreatment::drop &&
+           has_fitting_layout && keeps_step;
 }
 
 Settings CuttableBody::settings_with_room(std::size_t nodes) const {

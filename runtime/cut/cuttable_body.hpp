@@ -41,12 +41,11 @@ struct CutOptions {
     double smallest_fraction = 0;
     /// How many new nodes a cut body takes up before it is laid out anew, as a share of those that it has then. As long
     /// as there is room, a cut changes the elements and nodes around it in place; its work is proportional to their
-    /// number. 0: every cut lays the body out anew, in time proportional to its size. So does every cut of a body with
-    /// blended fronts or a smallest fraction, with block rows, with a scatter strategy other than private copies, with
-    /// crumbs that are dropped, or with an explicit integrator whose critical step has to be found after each cut
-    /// (unless Settings::force_time_step). Off by default: it is younger than the rest, and in hours of random cuts it
-    /// has ended a program once.
-    double room = 0;
+    /// number, with blended fronts to that of all elements that have been cut. 0: every cut lays the body out anew, in
+    /// time proportional to its size. So does every cut of a body with a smallest fraction, with block rows, with a
+    /// scatter strategy other than private copies, with crumbs that are dropped, or with an explicit integrator whose
+    /// critical step has to be found after each cut (unless Settings::force_time_step).
+    double room = 0.1;
 };
 
 /// A body that can be cut between steps. A cut moves nothing: new copies start where those that they were separated

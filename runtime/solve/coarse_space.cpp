@@ -92,16 +92,10 @@ CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const ke
     : kernels_(&kernels),
       numbering_(&numbering),
       edges_(&edges),
-      aggregate_of_(static_cast<std::size_t>(numbering.node_count), -1),
+      aggregates_(numbering),
       offset_(static_cast<std::size_t>(numbering.node_count) * 4),
       change_(static_cast<std::size_t>(numbering.blocks())),
       matrices_(std::make_unique<CoarseMatrices>()) {
-    for (int aggregate = 0; aggregate < numbering.aggregates(); ++aggregate) {
-        for (std::int32_t node = numbering.aggregate_begin[aggregate]; node < numbering.aggregate_begin[aggregate + 1];
-             ++node) {
-            aggregate_of_[node] = aggregate;
-        }
-    }
     matrices_->crossing.resize(static_cast<std::size_t>(numbering.blocks()));
     matrices_->pairs.resize(matrices_->crossing.size());
     for (int block = 0; block < numbering.blocks(); ++block) take_up_edges(block);
@@ -110,15 +104,40 @@ CoarseSpace<Real>::CoarseSpace(const kernels::KernelSet<Real>& kernels, const ke
 
 template <class Real>
 void CoarseSpace<Real>::change(std::span<const int> blocks) {
-    for (const int block : blocks) take_up_edges(block);
-    is_fresh_ = false;
     CoarseMatrices& m = *matrices_;
+    const auto count = static_cast<std::size_t>(numbering_->blocks());
+    // Where the aggregates of a block are others, so are the pairs of all blocks that border on it.
+    std::vector<std::vector<int>> borders(count);
+    for (std::size_t block = 0; block < count; ++block) {
+        for (const AggregatePair& pair : m.pairs[block]) {
+            borders[block].push_back(aggregates_.block_of(pair.first));
+            borders[block].push_back(aggregates_.block_of(pair.second));
+        }
+    }
+    std::vector<bool> is_old(count);
+    for (const int block : blocks) is_old[block] = true;
+    for (const int severed : aggregates_.change(edges_->pattern(), blocks)) {
+        for (std::size_t block = 0; block < count; ++block) {
+            is_old[block] = is_old[block] || std::ranges::find(borders[block], severed) != borders[block].end();
+        }
+    }
+    for (std::size_t block = 0; block < count; ++block) {
+        if (is_old[block]) take_up_edges(static_cast<int>(block));
+    }
+    is_fresh_ = false;
     // The pattern of a sparse matrix holds as long as it has all pairs.
-    bool holds_all = unknowns() == modes * numbering_->block_aggregate_begin.back();
-    for (const int block : blocks) {
+    bool holds_all = counted() == aggregates_.count();
+    for (std::size_t block = 0; block < count && holds_all; ++block) {
+        if (!is_old[block]) continue;
         for (const AggregatePair& pair : m.pairs[block]) holds_all = holds_all && m.holds(pair.first, pair.second);
     }
-    if (!holds_all) take_up_aggregates();
+    if (!holds_all) {
+        take_up_aggregates();
+        return;
+    }
+    // Numbers without nodes have no modes.
+    for (Matrix6& basis : m.basis) basis.setZero();
+    for (Matrix6& diagonal : m.diagonal) diagonal.setZero();
 }
 
 template <class Real>
@@ -147,7 +166,7 @@ void CoarseSpace<Real>::take_up_edges(int block) {
             for (int lane = 0; lane < pattern.width; ++lane) {
                 const std::int32_t row = pattern.row[chunk * pattern.width + lane] / 4;
                 const std::int32_t column = pattern.column[entry * pattern.width + lane] / 4;
-                const std::int32_t a = aggregate_of_[row], b = aggregate_of_[column];
+                const std::int32_t a = aggregates_.of_node()[row], b = aggregates_.of_node()[column];
                 // The room also has edges within aggregates of other blocks.
                 if (a == b && (row == column || is_own(row))) continue;
                 m.crossing[block].push_back(
@@ -160,13 +179,12 @@ void CoarseSpace<Real>::take_up_edges(int block) {
 template <class Real>
 void CoarseSpace<Real>::take_up_aggregates() {
     CoarseMatrices& m = *matrices_;
-    const int aggregates = numbering_->block_aggregate_begin.back(), unknowns = modes * aggregates;
+    const int aggregates = aggregates_.count(), unknowns = modes * aggregates;
     restricted_.assign(static_cast<std::size_t>(unknowns), 0.0);
     correction_.assign(restricted_.size(), Real(0));
-    m.diagonal.resize(static_cast<std::size_t>(aggregates));
-    // Padding of the room is of an aggregate that may not be there yet.
-    m.inside.resize(static_cast<std::size_t>(numbering_->aggregates()) * kernels::coarse_diagonal_sums);
-    m.basis.resize(m.diagonal.size());
+    m.diagonal.assign(static_cast<std::size_t>(aggregates), Matrix6::Zero());
+    m.inside.resize(static_cast<std::size_t>(aggregates) * kernels::coarse_diagonal_sums);
+    m.basis = m.diagonal;
     m.scale.resize(unknowns);
     m.right_hand_side.resize(unknowns);
     m.solution.resize(unknowns);
@@ -222,28 +240,25 @@ double CoarseSpace<Real>::change(Scheduler& scheduler, const double* positions) 
     if (change_.empty()) return 0;  // no free node
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         double largest = 0;
-        for (std::int32_t a = numbering_->block_aggregate_begin[block];
-             a < numbering_->block_aggregate_begin[block + 1]; ++a) {
-            const std::int32_t begin = numbering_->aggregate_begin[a], end = numbering_->aggregate_begin[a + 1];
+        aggregates_.for_each_of_block(block, [&](std::int32_t a) {
             // sum |d - mean d|^2 for d = x - r' is sum |d|^2 - |sum d|^2 / n, since the offsets r' have mean zero.
-            Vector3 sum = Vector3::Zero();
+            Vector3 origin = Vector3::Zero(), sum = Vector3::Zero();
             double squares = 0, size = 0;
             int count = 0;
-            const Vector3 origin = Eigen::Map<const Vector3>(positions + 4 * static_cast<std::int64_t>(begin));
-            for (std::int32_t node = begin; node < end; ++node) {
-                if (numbering_->user_of_internal[node] < 0) continue;
+            aggregates_.for_each_node(a, [&](std::int32_t node) {
                 const std::int64_t at = 4 * static_cast<std::int64_t>(node);
                 const Vector3 r(offset_[at], offset_[at + 1], offset_[at + 2]);
-                const Vector3 d = Eigen::Map<const Vector3>(positions + at) - origin - r;
+                const Vector3 x = Eigen::Map<const Vector3>(positions + at);
+                if (count++ == 0) origin = x;
+                const Vector3 d = x - origin - r;
                 sum += d;
                 squares += d.squaredNorm();
                 size += r.squaredNorm();
-                ++count;
-            }
+            });
             const double moved = squares - sum.squaredNorm() / std::max(count, 1);
             if (size > 0) largest = std::max(largest, moved / size);
             if (!std::isfinite(moved)) largest = std::numeric_limits<double>::infinity();
-        }
+        });
         change_[block] = largest;
     });
     return std::sqrt(std::max(0.0, *std::max_element(change_.begin(), change_.end())));
@@ -251,29 +266,25 @@ double CoarseSpace<Real>::change(Scheduler& scheduler, const double* positions) 
 
 template <class Real>
 void CoarseSpace<Real>::set_modes(const double* positions, int block) {
-    for (std::int32_t a = numbering_->block_aggregate_begin[block]; a < numbering_->block_aggregate_begin[block + 1];
-         ++a) {
-        const std::int32_t begin = numbering_->aggregate_begin[a], end = numbering_->aggregate_begin[a + 1];
+    aggregates_.for_each_of_block(block, [&](std::int32_t a) {
         Vector3 centre = Vector3::Zero();
         int count = 0;
-        for (std::int32_t node = begin; node < end; ++node) {
-            if (numbering_->user_of_internal[node] < 0) continue;
+        aggregates_.for_each_node(a, [&](std::int32_t node) {
             centre += Eigen::Map<const Vector3>(positions + 4 * static_cast<std::int64_t>(node));
             ++count;
-        }
+        });
         centre /= std::max(count, 1);
         Matrix3 inertia = Matrix3::Zero();
-        for (std::int32_t node = begin; node < end; ++node) {
-            if (numbering_->user_of_internal[node] < 0) continue;
+        aggregates_.for_each_node(a, [&](std::int32_t node) {
             const std::int64_t at = 4 * static_cast<std::int64_t>(node);
             const Vector3 r = Eigen::Map<const Vector3>(positions + at) - centre;
             for (int axis = 0; axis < 3; ++axis) offset_[at + axis] = static_cast<Real>(r[axis]);
             inertia += r.squaredNorm() * Matrix3::Identity() - r * r.transpose();
-        }
+        });
         // Rotations about principal axes of no extent move nothing: a node alone has none, collinear nodes two.
         Matrix6& basis = matrices_->basis[a];
         basis.setZero();
-        if (count == 0) continue;
+        if (count == 0) return;
         basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
         Eigen::SelfAdjointEigenSolver<Matrix3> axes;
         axes.computeDirect(inertia);
@@ -286,7 +297,7 @@ void CoarseSpace<Real>::set_modes(const double* positions, int block) {
                 basis.block<3, 1>(3, 3 + k) = axes.eigenvectors().col(k) / std::sqrt(moment);
             }
         }
-    }
+    });
 }
 
 template <class Real>
@@ -307,30 +318,29 @@ void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
         return k;
     };
     // Masses, sum m T^T T with T = [1, -[r]x], and the edges within an aggregate.
-    const std::int32_t first_aggregate = numbering_->block_aggregate_begin[block],
-                       last_aggregate = numbering_->block_aggregate_begin[block + 1];
-    std::fill(m.inside.begin() + first_aggregate * kernels::coarse_diagonal_sums,
-              m.inside.begin() + last_aggregate * kernels::coarse_diagonal_sums, 0.0);
+    aggregates_.for_each_of_block(block, [&](std::int32_t a) {
+        std::fill_n(m.inside.begin() + a * kernels::coarse_diagonal_sums, kernels::coarse_diagonal_sums, 0.0);
+    });
     kernels_->coarse.diagonal({.block_chunk_begin = pattern.block_chunk_begin.data(),
                                .chunk_entry_begin = pattern.chunk_entry_begin.data(),
                                .row = pattern.row.data(),
                                .column = pattern.column.data(),
                                .values = values,
-                               .aggregate = aggregate_of_.data(),
+                               .aggregate = aggregates_.of_node().data(),
                                .offset = offset_.data(),
                                .sums = m.inside.data()},
                               block);
-    for (std::int32_t a = first_aggregate; a < last_aggregate; ++a) {
+    aggregates_.for_each_of_block(block, [&](std::int32_t a) {
         double mass = 0;
         Vector3 moment = Vector3::Zero();
         Matrix3 second_moment = Matrix3::Zero();
-        for (std::int32_t node = numbering_->aggregate_begin[a]; node < numbering_->aggregate_begin[a + 1]; ++node) {
+        aggregates_.for_each_node(a, [&](std::int32_t node) {
             const auto nodal = static_cast<double>(scaled_mass[node]);
             const Vector3 r = offset(node);
             mass += nodal;
             moment += nodal * r;
             second_moment += nodal * r * r.transpose();
-        }
+        });
         Eigen::Map<const Eigen::Matrix<double, kernels::coarse_diagonal_sums, 1>> inside(
             m.inside.data() + a * kernels::coarse_diagonal_sums);
         Matrix6& diagonal = m.diagonal[a];
@@ -342,7 +352,7 @@ void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
         rotation << inside[9], inside[12], inside[13], inside[12], inside[10], inside[14], inside[13], inside[14],
             inside[11];
         diagonal.bottomRightCorner<3, 3>() = rotation + second_moment.trace() * Matrix3::Identity() - second_moment;
-    }
+    });
     for (AggregatePair& pair : m.pairs[block]) {
         pair.coupling.setZero();
         pair.second_diagonal.setZero();
@@ -350,7 +360,7 @@ void CoarseSpace<Real>::accumulate(const Real* scaled_mass, int block) {
     for (const CrossingEdge& edge : m.crossing[block]) {
         const Matrix3 k = matrix(edge.value), ci = cross_matrix(offset(edge.row));
         const Matrix3 kci = k * ci;
-        Matrix6& first = m.diagonal[aggregate_of_[edge.row]];
+        Matrix6& first = m.diagonal[aggregates_.of_node()[edge.row]];
         first.topLeftCorner<3, 3>() -= k;
         first.topRightCorner<3, 3>() += kci;
         first.bottomRightCorner<3, 3>() += ci * kci;
@@ -489,6 +499,51 @@ void CoarseSpace<Real>::solve() {
             m.basis[a] * m.scale.segment<modes>(modes * a).cwiseProduct(m.solution.segment<modes>(place(a)));
         for (int k = 0; k < modes; ++k) correction_[modes * a + k] = static_cast<Real>(motion[k]);
     }
+    for (int block = 0; block < numbering_->blocks(); ++block) {
+        aggregates_.for_each_piece(block, [&](std::int32_t number, const Aggregates::Piece& piece) {
+            for (int k = 0; k < modes; ++k) correction_[modes * number + k] -= correction_[modes * piece.aggregate + k];
+        });
+    }
+}
+
+template <class Real>
+template <class Accumulate>
+void CoarseSpace<Real>::restrict_to_pieces(const Accumulate* r, int block) {
+    aggregates_.for_each_piece(block, [&](std::int32_t number, const Aggregates::Piece& piece) {
+        Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+        for (const std::int32_t node : piece.nodes) {
+            const std::int64_t at = 4 * static_cast<std::int64_t>(node);
+            const Vector3 f(r[at], r[at + 1], r[at + 2]);
+            force += f;
+            torque += Vector3(offset_[at], offset_[at + 1], offset_[at + 2]).cross(f);
+        }
+        double *of_piece = &restricted_[modes * number], *of_aggregate = &restricted_[modes * piece.aggregate];
+        for (int axis = 0; axis < 3; ++axis) {
+            of_piece[axis] = force[axis];
+            of_piece[3 + axis] = torque[axis];
+        }
+        for (int k = 0; k < modes; ++k) of_aggregate[k] -= of_piece[k];
+    });
+}
+
+template <class Real>
+template <class Accumulate>
+double CoarseSpace<Real>::move_pieces(const Accumulate* r, Real* z, int block) const {
+    using Motion = Eigen::Matrix<Real, 3, 1>;
+    double product = 0;
+    aggregates_.for_each_piece(block, [&](std::int32_t number, const Aggregates::Piece& piece) {
+        const Eigen::Map<const Motion> translation(&correction_[modes * number]),
+            rotation(&correction_[modes * number + 3]);
+        for (const std::int32_t node : piece.nodes) {
+            const std::int64_t at = 4 * static_cast<std::int64_t>(node);
+            const Motion motion = translation + rotation.cross(Eigen::Map<const Motion>(&offset_[at]));
+            for (int axis = 0; axis < 3; ++axis) {
+                z[at + axis] += motion[axis];
+                product += static_cast<double>(r[at + axis]) * static_cast<double>(motion[axis]);
+            }
+        }
+    });
+    return product;
 }
 
 template <class Real>
@@ -509,8 +564,8 @@ template <class Real>
 std::size_t CoarseSpace<Real>::bytes() const noexcept {
     using kernels::heap_bytes;
     const CoarseMatrices& m = *matrices_;
-    std::size_t bytes = heap_bytes(aggregate_of_) + heap_bytes(offset_) + heap_bytes(restricted_) +
-                        heap_bytes(correction_) + heap_bytes(m.diagonal) + heap_bytes(m.basis);
+    std::size_t bytes = aggregates_.bytes() + heap_bytes(offset_) + heap_bytes(restricted_) + heap_bytes(correction_) +
+                        heap_bytes(m.diagonal) + heap_bytes(m.basis);
     for (const auto& crossing : m.crossing) bytes += heap_bytes(crossing);
     for (const auto& pairs : m.pairs) bytes += heap_bytes(pairs);
     bytes += static_cast<std::size_t>(m.dense.size() + m.inverse.size()) * sizeof(double);
@@ -556,5 +611,11 @@ void CoarseSpace<Real>::restore(std::span<const double>& numbers) {
 
 template class CoarseSpace<float>;
 template class CoarseSpace<double>;
+template void CoarseSpace<float>::restrict_to_pieces<float>(const float*, int);
+template void CoarseSpace<float>::restrict_to_pieces<double>(const double*, int);
+template void CoarseSpace<double>::restrict_to_pieces<double>(const double*, int);
+template double CoarseSpace<float>::move_pieces<float>(const float*, float*, int) const;
+template double CoarseSpace<float>::move_pieces<double>(const double*, float*, int) const;
+template double CoarseSpace<double>::move_pieces<double>(const double*, double*, int) const;
 
 }  // namespace lancet::runtime

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lancet/runtime/solve/aggregates.hpp"
 #include "lancet/runtime/solve/row_operators.hpp"
 
 namespace lancet::runtime {
@@ -13,7 +14,7 @@ namespace lancet::runtime {
 struct CoarseMatrices;
 
 /// The rigid-body modes of the aggregates of a numbering, as an additive coarse space: correction = Z (Z^T A Z)^-1 Z^T
-/// r.
+/// r. A cut in place severs aggregates: their pieces have modes of their own (Aggregates).
 ///
 /// Z holds translations and rotations about each aggregate's current centre, orthonormalised; modes that an aggregate
 /// does not have (one node, collinear or collapsed nodes) are left out. Z^T A Z comes from the edge blocks of A in one
@@ -48,6 +49,15 @@ class CoarseSpace {
     /// For the vector kernels: where they put the restriction and read the correction.
     kernels::CoarseArguments<Real> arguments() noexcept;
 
+    /// The vector kernels go by the ranges of aggregates. After restrict_residual: what the pieces of a block feel of
+    /// the residual r (xyz_), which is taken from their aggregates.
+    template <class Accumulate>
+    void restrict_to_pieces(const Accumulate* r, int block);
+    /// After precondition_with_coarse: the motion that the pieces have and their aggregates do not is added to z
+    /// (xyz_); returns what r . z has more by that.
+    template <class Accumulate>
+    double move_pieces(const Accumulate* r, Real* z, int block) const;
+
     int unknowns() const noexcept;
     std::size_t bytes() const noexcept;
 
@@ -57,6 +67,8 @@ class CoarseSpace {
     void restore(std::span<const double>& numbers);
 
   private:
+    /// How many aggregates and pieces there are modes for.
+    int counted() const noexcept { return unknowns() / modes; }
     void take_up_edges(int block);
     void take_up_aggregates();
     void set_modes(const double* positions, int block);
@@ -66,8 +78,8 @@ class CoarseSpace {
     const kernels::KernelSet<Real>* kernels_;
     const kernels::NodeNumbering* numbering_;
     const BlockMatrix<Real>* edges_;
-    std::vector<std::int32_t> aggregate_of_;  ///< [node], -1 at fixed nodes
-    kernels::AlignedVector<Real> offset_;     ///< xyz_, from the centre of the aggregate
+    Aggregates aggregates_;
+    kernels::AlignedVector<Real> offset_;  ///< xyz_, from the centre of the aggregate or piece
     std::vector<double> restricted_;
     std::vector<Real> correction_;
     std::vector<double> change_;  ///< [block]

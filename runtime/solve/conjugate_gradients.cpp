@@ -42,12 +42,23 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
         });
         return sum_products();
     }
-    const auto coarse = preconditioner.coarse()->arguments();
-    scheduler.for_each_block(numbering_->blocks(),
-                             [&](int block) { kernels_->restrict_residual(coarse, arguments_, block); });
-    preconditioner.coarse()->solve();
+    return precondition_with_coarse(scheduler, *preconditioner.coarse(), filter, [](int) {});
+}
+
+template <class Real, class Accumulate>
+template <class Before>
+typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::precondition_with_coarse(
+    Scheduler& scheduler, CoarseSpace<Real>& coarse, const ConstraintFilter& filter, const Before& before) {
+    const auto modes = coarse.arguments();
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
-        kernels_->precondition_with_coarse(coarse, arguments_, block);
+        before(block);
+        kernels_->restrict_residual(modes, arguments_, block);
+        coarse.restrict_to_pieces(r_.data(), block);
+    });
+    coarse.solve();
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        kernels_->precondition_with_coarse(modes, arguments_, block);
+        r_dot_z_[static_cast<std::size_t>(block)] += coarse.move_pieces(r_.data(), z_.data(), block);
         filter.apply(z_.data(), block);
     });
     return sum_products();
@@ -71,18 +82,10 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
         });
         return sum_products();
     }
-    const auto coarse = preconditioner.coarse()->arguments();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    return precondition_with_coarse(scheduler, *preconditioner.coarse(), filter, [&](int block) {
         complete_product(block);
         kernels_->update(arguments_, block);
-        kernels_->restrict_residual(coarse, arguments_, block);
     });
-    preconditioner.coarse()->solve();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
-        kernels_->precondition_with_coarse(coarse, arguments_, block);
-        filter.apply(z_.data(), block);
-    });
-    return sum_products();
 }
 
 template <class Real, class Accumulate>

@@ -57,6 +57,10 @@ class ConjugateGradients {
     };
 
     Products precondition(Scheduler& scheduler, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter);
+    /// Calls before(block) in the first of its passes.
+    template <class Before>
+    Products precondition_with_coarse(Scheduler& scheduler, CoarseSpace<Real>& coarse, const ConstraintFilter& filter,
+                                      const Before& before);
     Products advance(Scheduler& scheduler, Operator<Real>& matrix, Preconditioner<Real>& preconditioner,
                      const ConstraintFilter& filter, double alpha, double beta);
     Products sum_products() const noexcept;
