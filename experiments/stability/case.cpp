@@ -10,8 +10,9 @@
 namespace lancet::experiments::stability {
 
 const std::vector<Category>& categories() {
-    static const std::vector<Category> all{fractions(),      critical_steps(), sequences(),     recovery(),
-                                           poisson_ratios(), stiff_parts(),    flat_elements(), not_finite()};
+    static const std::vector<Category> all{fractions(),   critical_steps(), sequences(),
+                                           progressive(), recovery(),       poisson_ratios(),
+                                           stiff_parts(), flat_elements(),  not_finite()};
     return all;
 }
 

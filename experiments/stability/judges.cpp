@@ -56,13 +56,21 @@ double thinnest_part(const mesh::CutMesh& cut) {
     return thinnest;
 }
 
-double rounding_energy(const runtime::Scene& scene, runtime::ScalarMode scalar) {
+namespace {
+
+/// How an element's strain is rounded, and what that does.
+struct StrainRounding {
+    double strain, modulus, volume, height;
+};
+
+template <class Visit>
+void for_each_rounding(const runtime::Scene& scene, runtime::ScalarMode scalar, const Visit& visit) {
     const mesh::TetMesh& mesh = scene.mesh;
     const double epsilon = epsilon_of(scalar);
-    const auto bounds = mesh.bounds();
     double farthest = 0;
-    for (const Point& corner : bounds) farthest = std::max(farthest, std::hypot(corner[0], corner[1], corner[2]));
-    double energy = 0;
+    for (const Point& corner : mesh.bounds()) {
+        farthest = std::max(farthest, std::hypot(corner[0], corner[1], corner[2]));
+    }
     for (std::size_t e = 0; e < mesh.tetrahedra().size(); ++e) {
         const auto element = static_cast<std::int32_t>(e);
         const auto found = scene.materials.find(mesh.regions()[e]);
@@ -71,11 +79,29 @@ double rounding_energy(const runtime::Scene& scene, runtime::ScalarMode scalar) 
         const double volume = mesh.volume(element), slope = height_over_edge(mesh, element);
         // The longest edge from the quality, 6 sqrt(2) V / l^3.
         const double edge = std::cbrt(6 * std::sqrt(2.0) * volume / quality(mesh, element));
-        const double strain = 8 * (epsilon + std::numeric_limits<double>::epsilon() * farthest / edge) / slope;
-        energy += 0.5 * (2 * material.mu + 3 * std::abs(material.lambda)) * strain * strain * volume *
-                  scene.parts.of(e).fraction;
+        visit(StrainRounding{.strain = 8 * (epsilon + std::numeric_limits<double>::epsilon() * farthest / edge) / slope,
+                             .modulus = 2 * material.mu + 3 * std::abs(material.lambda),
+                             .volume = volume * scene.parts.of(e).fraction,
+                             .height = slope * edge});
     }
+}
+
+}  // namespace
+
+double rounding_energy(const runtime::Scene& scene, runtime::ScalarMode scalar) {
+    double energy = 0;
+    for_each_rounding(scene, scalar, [&](const StrainRounding& of) {
+        energy += 0.5 * of.modulus * of.strain * of.strain * of.volume;
+    });
     return energy;
+}
+
+double rounding_force(const runtime::Scene& scene, runtime::ScalarMode scalar) {
+    double largest = 0;
+    for_each_rounding(scene, scalar, [&](const StrainRounding& of) {
+        largest = std::max(largest, of.modulus * of.strain * of.volume / of.height);
+    });
+    return largest;
 }
 
 MotionBound motion_bound(const runtime::Scene& scene, const runtime::Settings& settings) {
@@ -145,10 +171,9 @@ void judge_motion(runtime::DeformableBody& body, runtime::Scheduler& scheduler, 
         largest_energy = std::max(largest_energy, energy);
         rounding += 128 * bound.epsilon * (before + energy) + bound.gravity_rounding;
         double allowed = work + rounding;
-        if (bound.is_explicit) {
-            const double root = 2.0 * step * std::sqrt(bound.rounding_energy);
-            allowed += bound.share_of_work * most_work + root * (2 * std::sqrt(largest_energy) + root);
-        }
+        // Explicit: of each step; implicit: of the energy at the start.
+        const double root = 2.0 * (bound.is_explicit ? step : 1) * std::sqrt(bound.rounding_energy);
+        allowed += bound.share_of_work * most_work + root * (2 * std::sqrt(largest_energy) + root);
         const double scale = std::max({energy, std::abs(work), std::numeric_limits<double>::min()});
         worst_excess = std::max(worst_excess, (energy - work) / scale);
         if (energy > allowed) {

@@ -26,6 +26,8 @@ double thinnest_part(const mesh::CutMesh& cut);
 /// 1 / h, h the smallest height. So |dF| <= 8 (eps L + eps_double |x|) / h, and the energy of that strain is at most
 /// (2 mu + 3 lambda) |dF|^2 V / 2.
 double rounding_energy(const runtime::Scene& scene, runtime::ScalarMode scalar);
+/// The force that the same strain puts on a corner of an element, at most: (2 mu + 3 lambda) |dF| V / h.
+double rounding_force(const runtime::Scene& scene, runtime::ScalarMode scalar);
 
 /// How much energy a motion from rest may have.
 ///
@@ -40,7 +42,7 @@ double rounding_energy(const runtime::Scene& scene, runtime::ScalarMode scalar);
 struct MotionBound {
     bool is_explicit = false;
     double share_of_work = 0;
-    double rounding_energy = 0;  ///< of each force evaluation
+    double rounding_energy = 0;  ///< of each force evaluation; implicit: of the energy at the start, zero at rest
     double epsilon = 0;
     double gravity_rounding = 0;
 };

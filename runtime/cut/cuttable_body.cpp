@@ -75,6 +75,11 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
     const BodyBeforeCut before{.body = body_.get(),
                                .copies = static_cast<std::int32_t>(mesh.node_of_copy().size()),
                                .opened_from = opened_before};
+    std::map<std::int32_t, NodeMomentum> momenta;
+    for (const std::int32_t copy : opened_before) {
+        const std::int32_t node = mesh_.node_of_copy()[static_cast<std::size_t>(copy)];
+        if (!momenta.contains(node)) momenta[node] = momentum_of_node(node);
+    }
     CutUpdate update;
     update.mesh = mesh.cut(surface, front, positions);
     const bool moves_front = options_.fronts == mesh::Fronts::blended && update.mesh.touched_elements > 0;
@@ -94,6 +99,7 @@ CutUpdate CuttableBody::cut(Scheduler& scheduler, const mesh::CutSurface& surfac
         update.crumbs = components_.crumbs(mesh_, elements_, options_.largest_crumb);
     }
     blend_ = mesh::FrontBlend(mesh_, options_.fronts);
+    keep_momentum(momenta);
     apply_loads();
     for (const auto& [node, target] : holds_) {
         for (const std::int32_t copy : copies_of_node(node)) body_->hold(copy, target);
@@ -192,6 +198,33 @@ std::vector<std::int32_t> CuttableBody::copies_of_node(std::int32_t node) const 
         }
     }
     return copies;
+}
+
+CuttableBody::NodeMomentum CuttableBody::momentum_of_node(std::int32_t node) const {
+    NodeMomentum sum;
+    for (const std::int32_t copy : copies_of_node(node)) {
+        const double mass = body_->nodal_mass(copy);
+        const Point velocity = body_->motion(copy).velocity;
+        for (std::size_t axis = 0; axis < 3; ++axis) sum.momentum[axis] += mass * velocity[axis];
+        sum.mass += mass;
+    }
+    return sum;
+}
+
+void CuttableBody::keep_momentum(const std::map<std::int32_t, NodeMomentum>& before) {
+    if (before.empty()) return;
+    std::vector<Point> velocities(body_->nodes());
+    body_->velocities(velocities);
+    for (const auto& [node, had] : before) {
+        const NodeMomentum has = momentum_of_node(node);
+        for (const std::int32_t copy : copies_of_node(node)) {
+            Point& velocity = velocities[static_cast<std::size_t>(copy)];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                velocity[axis] += (had.momentum[axis] - has.momentum[axis]) / has.mass;
+            }
+        }
+    }
+    body_->set_velocities(velocities);
 }
 
 void CuttableBody::hold(std::int32_t node, const Point& target) {

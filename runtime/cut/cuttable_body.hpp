@@ -53,7 +53,8 @@ struct CutOptions {
 /// apart goes its own way from the next step on. A cut that throws leaves the body as it was.
 ///
 /// With blended fronts (lanes.hpp) mass goes over from a copy to the one that opens from it as the front moves on; it
-/// takes its velocity along, which keeps linear momentum, and angular momentum but for the opening times that mass.
+/// takes its velocity along. Where cuts cross a front, mass also goes back, and all copies of the node share what it
+/// brings. So linear momentum is kept, and angular momentum but for the opening times that mass.
 class CuttableBody {
   public:
     /// Starts without a cut. Throws as make_body does.
@@ -96,6 +97,14 @@ class CuttableBody {
     void apply_loads();
     void stop(std::span<const Crumb> crumbs);
     std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
+    /// The momentum of all copies of a node of the mesh, and their mass.
+    struct NodeMomentum {
+        Point momentum{};
+        double mass = 0;
+    };
+    NodeMomentum momentum_of_node(std::int32_t node) const;
+    /// Gives the copies of some nodes of the mesh the momentum that they had, by the same change of all velocities.
+    void keep_momentum(const std::map<std::int32_t, NodeMomentum>& before);
     /// True where cuts change the body in place as long as there is room.
     bool can_change() const;
     Settings settings_with_room(std::size_t nodes) const;

@@ -59,8 +59,8 @@ TEST(StabilityProgram, CountsEveryCategoryAndNamesEveryFailure) {
         failed += row.at("failed").get<int>();
         promised_failed += row.at("promised_failed").get<int>();
     }
-    EXPECT_EQ(categories, (std::set<std::string>{"fractions", "critical-steps", "sequences", "recovery", "poisson",
-                                                 "stiffness-ratio", "quality", "not-finite"}));
+    EXPECT_EQ(categories, (std::set<std::string>{"fractions", "critical-steps", "sequences", "progressive", "recovery",
+                                                 "poisson", "stiffness-ratio", "quality", "not-finite"}));
     EXPECT_EQ(code, promised_failed > 0 ? 1 : 0);
     ASSERT_EQ(json.at("failures").size(), static_cast<std::size_t>(failed));
     for (const auto& failure : json.at("failures")) {
