@@ -4,9 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
+#include "lancet/runtime/schedule/pause.hpp"
 
 namespace lancet::runtime {
 
@@ -21,7 +19,7 @@ class SpinThenSleep {
     void wait(Condition condition) {
         for (int look = 0; look < looks_; ++look) {
             if (condition()) return;
-            pause();
+            pause_thread();
         }
         std::unique_lock lock(mutex_);
         sleepers_.fetch_add(1, std::memory_order_acq_rel);
@@ -38,14 +36,6 @@ class SpinThenSleep {
     }
 
   private:
-    static void pause() noexcept {
-#if defined(__SSE2__)
-        _mm_pause();
-#elif defined(__aarch64__)
-        __asm__ volatile("yield");
-#endif
-    }
-
     int looks_;
     std::atomic<int> sleepers_{0};
     std::mutex mutex_;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "lancet/runtime/schedule/function_reference.hpp"
+#include "lancet/runtime/schedule/loop.hpp"
+
+namespace lancet::runtime {
+
+/// Helpers that stay from loop to loop. A solver runs tens of loops of some tens of microseconds in a row: to call a
+/// thread of a task scheduler to each costs microseconds, and milliseconds where it has gone to sleep. Here a thread
+/// that was called once looks for further loops for a while, and leaves where none comes or a task waits for a thread.
+/// Nobody waits for helpers that do not come: chunks that none has begun are run by the thread whose loop it is.
+class LoopCrew {
+  public:
+    /// For loops of up to `threads` chunks: one of the thread that calls, the others of helpers.
+    explicit LoopCrew(int threads);
+
+    /// The sole use of the crew, if it was free.
+    class Lease {
+      public:
+        explicit Lease(LoopCrew& crew) noexcept
+            : crew_(crew), is_granted_(!crew.is_taken_.exchange(true, std::memory_order_acquire)) {}
+        Lease(const Lease&) = delete;
+        Lease& operator=(const Lease&) = delete;
+        ~Lease() {
+            if (is_granted_) crew_.is_taken_.store(false, std::memory_order_release);
+        }
+        bool is_granted() const noexcept { return is_granted_; }
+
+      private:
+        LoopCrew& crew_;
+        bool is_granted_;
+    };
+
+    /// Runs a loop; needs a lease. `call` is called for each helper that is missing, and has a thread call `serve` some
+    /// time, if it can.
+    void run(ChunkedLoop& loop, FunctionReference<void()> call);
+
+    /// What a helper does. Returns at once on the thread that ran the last loop.
+    void serve() noexcept;
+
+    /// A task is ready to run (1), or begins (-1): while some are ready for more than a moment, helpers leave.
+    void count_ready(int change) noexcept { ready_.fetch_add(change, std::memory_order_relaxed); }
+
+    /// The helpers that are there leave: nothing comes for a while, and somebody may wait for their threads.
+    void send_home() noexcept { departures_.fetch_add(1, std::memory_order_relaxed); }
+
+    /// Helpers leave, and nobody stays from now on. Those that were called and have not served yet must still do so.
+    void dismiss() noexcept { is_dismissed_.store(true, std::memory_order_relaxed); }
+
+  private:
+    struct alignas(64) Chunk {
+        std::atomic<std::uint64_t> round{0};  ///< in which it was begun last
+    };
+
+    bool begin(int chunk, std::uint64_t round) noexcept;
+    /// Runs chunks that nobody has begun, first the one with the number `first`; returns how many.
+    int run_chunks(int first, std::uint64_t round) noexcept;
+    bool await_round(std::uint64_t seen, unsigned departures) const noexcept;
+
+    int threads_;
+    std::atomic<bool> is_taken_{false}, is_dismissed_{false};
+    std::atomic<int> ready_{0};
+    std::atomic<unsigned> departures_{0};
+    std::atomic<const void*> runner_{nullptr};  ///< a mark of the thread that ran the last loop
+    std::atomic<int> helpers_{0};               ///< called, and not gone
+    std::vector<std::atomic<bool>> seats_;      ///< a helper keeps to one chunk, whose data its core has
+    std::vector<Chunk> chunks_;
+    ChunkedLoop* loop_ = nullptr;  ///< published by round_
+    alignas(64) std::atomic<std::uint64_t> round_{0};
+    alignas(64) std::atomic<int> helped_{0};  ///< chunks that helpers have ended
+};
+
+}  // namespace lancet::runtime
