@@ -113,7 +113,7 @@ class DividedComponents::Fronts {
 
 DividedComponents::DividedComponents(const mesh::CutMesh& cut, const DividedElements& elements,
                                      std::vector<bool> is_held)
-    : is_held_(std::move(is_held)) {
+    : is_held_(std::move(is_held)), has_openings_(!elements.opened_from().empty()) {
     const std::size_t copies = cut.node_of_copy().size();
     std::vector<mesh::Tetrahedron> lanes;
     std::vector<double> volumes;
@@ -128,24 +128,17 @@ DividedComponents::DividedComponents(const mesh::CutMesh& cut, const DividedElem
     const mesh::Components components = mesh::components(copies + elements.opened_from().size(), lanes);
     components_.resize(static_cast<std::size_t>(components.count));
     label_.assign(components.of_node.begin(), components.of_node.begin() + static_cast<std::ptrdiff_t>(copies));
-    for (std::size_t k = 0; k < elements.opened_from().size(); ++k) {
-        opening_[opening_from(elements.opened_from()[k])] = components.of_node[copies + k];
-    }
     for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
         components_[static_cast<std::size_t>(components.of_element[lane])].volume += volumes[lane];
         whole_ += volumes[lane];
     }
-    for (std::size_t copy = copies; copy-- > 0;) {
-        Component& component = components_[static_cast<std::size_t>(label_[copy])];
-        component.first = static_cast<std::int32_t>(copy);
-        if (is_held_[static_cast<std::size_t>(cut.node_of_copy()[copy])]) ++component.held;
+    for (std::size_t node = components.of_node.size(); node-- > 0;) {
+        const CopyName name =
+            node < copies ? static_cast<CopyName>(node) : opening_from(elements.opened_from()[node - copies]);
+        Component& component = components_[static_cast<std::size_t>(components.of_node[node])];
+        component.first = name;
+        if (is_held_[static_cast<std::size_t>(node_at(cut, name))]) ++component.held;
     }
-}
-
-std::int32_t DividedComponents::label_of(CopyName name) const {
-    if (!is_opening(name)) return label_[static_cast<std::size_t>(name)];
-    const auto found = opening_.find(name);
-    return found == opening_.end() ? label_[static_cast<std::size_t>(opening_from(name))] : found->second;
 }
 
 /// All that hangs together with some nodes.
@@ -167,16 +160,12 @@ DividedComponents::Piece DividedComponents::piece_of(const mesh::CutMesh& cut, c
 }
 
 void DividedComponents::take_off(const mesh::CutMesh& cut, const Piece& piece) {
-    const std::int32_t before = label_of(piece.names.front());
+    const std::int32_t before = label_[static_cast<std::size_t>(piece.names.front())];
     const auto component = static_cast<std::int32_t>(components_.size());
     Component& off = components_.emplace_back(Component{-1, 0, piece.volume});
     Component& rest = components_[static_cast<std::size_t>(before)];
     rest.volume -= piece.volume;
     for (const CopyName name : piece.names) {
-        if (is_opening(name)) {
-            opening_[name] = component;
-            continue;
-        }
         label_[static_cast<std::size_t>(name)] = component;
         if (off.first < 0 || name < off.first) off.first = name;
         if (!is_held_[static_cast<std::size_t>(node_at(cut, name))]) continue;
@@ -189,34 +178,32 @@ void DividedComponents::take_off(const mesh::CutMesh& cut, const Piece& piece) {
 }
 
 void DividedComponents::update(const mesh::CutMesh& cut, const DividedElements& elements) {
+    if (has_openings_ || !elements.opened_from().empty()) {
+        *this = DividedComponents(cut, elements, std::move(is_held_));
+        return;
+    }
     for (std::size_t copy = label_.size(); copy < cut.node_of_copy().size(); ++copy) {
         label_.push_back(label_[static_cast<std::size_t>(cut.parent_of_copy()[copy])]);
         if (is_held_[static_cast<std::size_t>(cut.node_of_copy()[copy])]) {
             ++components_[static_cast<std::size_t>(label_.back())].held;
         }
     }
-    std::map<CopyName, std::int32_t> opening;
-    for (const std::int32_t copy : elements.opened_from()) {
-        opening[opening_from(copy)] = label_of(opening_from(copy));
-    }
-    opening_ = std::move(opening);
     Fronts fronts(cut, elements);
-    for (const CopyName name : elements.changed_copies()) {
-        if (!is_opening(name) || opening_.contains(name)) fronts.add(name, label_of(name));
-    }
+    for (const CopyName name : elements.changed_copies()) fronts.add(name, label_[static_cast<std::size_t>(name)]);
     for (std::vector<CopyName>& names : fronts.run()) take_off(cut, piece_of(cut, elements, std::move(names)));
 }
 
 std::vector<Crumb> DividedComponents::crumbs(const mesh::CutMesh& cut, const DividedElements& elements,
                                              double largest) const {
     std::vector<Crumb> crumbs;
+    const auto node_of = [&](const Component& component) { return elements.node_of(cut, component.first); };
     for (const Component& component : components_) {
         if (component.held > 0 || component.volume > largest * whole_) continue;
         const Piece piece = piece_of(cut, elements, {component.first});
         Crumb& crumb = crumbs.emplace_back();
         // Components are numbered by their lowest nodes.
         crumb.component = static_cast<std::int32_t>(
-            std::ranges::count_if(components_, [&](const Component& c) { return c.first < component.first; }));
+            std::ranges::count_if(components_, [&](const Component& c) { return node_of(c) < node_of(component); }));
         crumb.volume = piece.volume;
         for (const CopyName name : piece.names) crumb.nodes.push_back(elements.node_of(cut, name));
         std::ranges::sort(crumb.nodes);

@@ -14,7 +14,8 @@ namespace lancet::runtime {
 /// The components of a body with cuts, kept while it is cut. A cut only takes apart: whatever comes off has a node next
 /// to what has been cut, so all these nodes are followed at once, each front as far as the others, until those of a
 /// component have met but for one, or have nothing left to go to. What that takes is proportional to the pieces that
-/// come off, the largest left out, and where nothing does, to the way around the cut's end.
+/// come off, the largest left out, and where nothing does, to the way around the cut's end. With blended fronts what
+/// opens may close again, and pieces that were apart hang together: components are then found anew.
 class DividedComponents {
   public:
     /// - is_held: [node of the mesh] fixed, or prescribed in any component
@@ -28,9 +29,9 @@ class DividedComponents {
 
   private:
     struct Component {
-        std::int32_t first = -1;  ///< its lowest copy
-        std::int64_t held = 0;    ///< copies of held nodes
-        double volume = 0;        ///< cubic metres
+        CopyName first = -1;    ///< its lowest node
+        std::int64_t held = 0;  ///< copies of held nodes
+        double volume = 0;      ///< cubic metres
     };
     /// What lies around a node.
     class Fronts;
@@ -38,14 +39,13 @@ class DividedComponents {
         std::vector<CopyName> names;
         double volume = 0;
     };
-    std::int32_t label_of(CopyName name) const;
     Piece piece_of(const mesh::CutMesh& cut, const DividedElements& elements, std::vector<CopyName> names) const;
     void take_off(const mesh::CutMesh& cut, const Piece& piece);
 
     std::vector<bool> is_held_;
-    double whole_ = 0;                          ///< volume of the body
-    std::vector<std::int32_t> label_;           ///< [copy] its component
-    std::map<CopyName, std::int32_t> opening_;  ///< those of opening copies
+    double whole_ = 0;                 ///< volume of the body
+    std::vector<std::int32_t> label_;  ///< [copy] its component
+    bool has_openings_ = false;
     std::vector<Component> components_;
 };
 

@@ -231,14 +231,16 @@ TEST_P(ChangedBody, IsTheBodyLaidOutAnewAfterEachOfManyCuts) {
 }
 
 // Small pieces are walked through in one go: what the last front has found is no piece that came off.
-TEST(ChangedComponents, AreThoseOfABodyLaidOutAnewHoweverSmallThePieces) {
+class ChangedComponents : public ::testing::TestWithParam<mesh::Fronts> {};
+
+TEST_P(ChangedComponents, AreThoseOfABodyLaidOutAnewHoweverSmallThePieces) {
     const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
     for (const unsigned seed : {1U, 2U, 3U, 4U}) {
         runtime::Scene scene;
         scene.mesh = mesh::box({.cells = {2, 2, 2}, .size = {0.2, 0.2, 0.2}});
         const Settings settings{.scalar = ScalarMode::double_precision};
-        CuttableBody changed(scene, settings, *scheduler, {.largest_crumb = 1, .room = 1});
-        CuttableBody rebuilt(scene, settings, *scheduler, {.largest_crumb = 1, .room = 0});
+        CuttableBody changed(scene, settings, *scheduler, {.fronts = GetParam(), .largest_crumb = 1, .room = 1});
+        CuttableBody rebuilt(scene, settings, *scheduler, {.fronts = GetParam(), .largest_crumb = 1, .room = 0});
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> unit(-1, 1);
         const auto vector = [&](double size) {
@@ -265,6 +267,9 @@ TEST(ChangedComponents, AreThoseOfABodyLaidOutAnewHoweverSmallThePieces) {
         EXPECT_GT(most, 1U) << "nothing came off";
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Fronts, ChangedComponents, ::testing::Values(mesh::Fronts::sharp, mesh::Fronts::blended),
+                         [](const auto& of) { return of.param == mesh::Fronts::sharp ? "sharp" : "blended"; });
 
 INSTANTIATE_TEST_SUITE_P(Bodies, ChangedBody, ::testing::ValuesIn(cases()), [](const auto& of) {
     std::string name = of.param.name;
