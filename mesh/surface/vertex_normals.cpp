@@ -1,9 +1,12 @@
 #include "lancet/mesh/surface/vertex_normals.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/mesh/surface/corner_normals.hpp"
 
 namespace lancet::mesh {
 
@@ -27,58 +30,58 @@ VertexCorners::VertexCorners(std::size_t vertices, std::span<const Triangle> tri
 
 namespace {
 
-/// The direction from a to b; zero where there is none.
-Point direction(const Point& a, const Point& b) {
-    const Point d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const double length = std::hypot(d[0], d[1], d[2]);
-    if (!(length > 0) || !std::isfinite(length)) return {};
-    return {d[0] / length, d[1] / length, d[2] / length};
+/// A vector in units of its length; zero where it has none.
+Point unit(const Point& sum) {
+    const double square = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
+    // Angles are below 2 pi times their number; where they are tiny, or opposite, their squares may be lost.
+    const double length = square > 1e-250 ? std::sqrt(square) : std::hypot(sum[0], sum[1], sum[2]);
+    return length > 0 ? Point{sum[0] / length, sum[1] / length, sum[2] / length} : Point{};
 }
 
-Point cross(const Point& u, const Point& v) {
-    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-
-double dot(const Point& u, const Point& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
-/// Adds the unit normal of the triangle, weighted by its angle at p: n / |n| atan2(|n|, u . v) with the edges u and v
-/// from p and n = u x v, of any length.
-void add_weighted(const Point& p, const Point& q, const Point& r, Point& sum) {
-    Point u{q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v{r[0] - p[0], r[1] - p[1], r[2] - p[2]};
-    Point normal = cross(u, v);
-    double square = dot(normal, normal);
-    // Where a square is not a normal number, edges of unit length; |n|^2 is of the fourth order in them.
-    constexpr double smallest = 1e-250, largest = 1e250;
-    if (!(square > smallest && square < largest)) {
-        u = direction(p, q);
-        v = direction(p, r);
-        normal = cross(u, v);
-        square = dot(normal, normal);
-        if (!(square > 0)) return;
-    }
-    const double sine = std::sqrt(square);
-    const double weight = std::atan2(sine, dot(u, v)) / sine;
-    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += weight * normal[axis];
+void add(Point& sum, const Point& normal) {
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += normal[axis];
 }
 
 }  // namespace
 
 void vertex_normals(const VertexCorners& corners, std::span<const Point> positions, std::size_t begin, std::size_t end,
                     std::span<Point> normals) {
+    if (begin == end) return;
+    constexpr std::size_t most = 64;
+    std::array<Triangle, most> around;
+    std::array<Point, 3 * most> of_corners;
+    std::span<const std::int32_t> rest = corners.of(begin, end);
+    std::size_t vertex = begin, left = corners.of(begin).size();  // corners of the vertex that are still to come
+    Point sum{};
+    const auto finish_complete_ones = [&] {
+        while (left == 0 && vertex < end) {
+            normals[vertex++] = unit(sum);
+            sum = {};
+            if (vertex < end) left = corners.of(vertex).size();
+        }
+    };
+    finish_complete_ones();
+    while (!rest.empty()) {
+        const std::size_t count = std::min(most, rest.size());
+        for (std::size_t k = 0; k < count; ++k) {
+            around[k] = corners.triangles()[static_cast<std::size_t>(rest[k] / 3)];
+        }
+        corner_normals(std::span(around).first(count), positions, of_corners);
+        for (std::size_t k = 0; k < count; ++k) {
+            add(sum, of_corners[3 * k + static_cast<std::size_t>(rest[k] % 3)]);
+            --left;
+            finish_complete_ones();
+        }
+        rest = rest.subspan(count);
+    }
+}
+
+void add_corner_normals(const VertexCorners& corners, std::span<const Point> corner_normals, std::size_t begin,
+                        std::size_t end, std::span<Point> normals) {
     for (std::size_t vertex = begin; vertex < end; ++vertex) {
         Point sum{};
-        for (const std::int32_t corner : corners.of(vertex)) {
-            const Triangle& t = corners.triangles()[static_cast<std::size_t>(corner / 3)];
-            const auto at = [&](std::int32_t k) -> const Point& {
-                return positions[static_cast<std::size_t>(t[static_cast<std::size_t>((corner + k) % 3)])];
-            };
-            // (corner + k) % 3 runs through the triangle from this corner on, since corner = 3 t + k.
-            add_weighted(at(0), at(1), at(2), sum);
-        }
-        const double length = std::hypot(sum[0], sum[1], sum[2]);
-        normals[vertex] = length > 0 ? Point{sum[0] / length, sum[1] / length, sum[2] / length} : Point{};
+        for (const std::int32_t corner : corners.of(vertex)) add(sum, corner_normals[static_cast<std::size_t>(corner)]);
+        normals[vertex] = unit(sum);
     }
 }
 
