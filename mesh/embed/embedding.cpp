@@ -154,15 +154,7 @@ Embedding embed(const TetMesh& mesh, std::span<const Point> points) {
 
 void place(std::span<const Tetrahedron> nodes, std::span<const Barycentric> weights, std::span<const Point> positions,
            std::span<Point> places) {
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        const Tetrahedron& n = nodes[p];
-        const Barycentric& w = weights[p];
-        const Point &a = positions[static_cast<std::size_t>(n[0])], &b = positions[static_cast<std::size_t>(n[1])],
-                    &c = positions[static_cast<std::size_t>(n[2])], &d = positions[static_cast<std::size_t>(n[3])];
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            places[p][axis] = (w[0] * a[axis] + w[1] * b[axis]) + (w[2] * c[axis] + w[3] * d[axis]);
-        }
-    }
+    for (std::size_t p = 0; p < places.size(); ++p) places[p] = place(nodes[p], weights[p], positions);
 }
 
 }  // namespace lancet::mesh

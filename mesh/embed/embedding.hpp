@@ -26,6 +26,17 @@ struct Embedding {
 /// @throws lancet::Error for a mesh without elements and for points that are not finite.
 Embedding embed(const TetMesh& mesh, std::span<const Point> points);
 
+/// Where a point is: sum_k weights[k] positions[nodes[k]].
+inline Point place(const Tetrahedron& nodes, const Barycentric& weights, std::span<const Point> positions) {
+    const Point &a = positions[static_cast<std::size_t>(nodes[0])], &b = positions[static_cast<std::size_t>(nodes[1])],
+                &c = positions[static_cast<std::size_t>(nodes[2])], &d = positions[static_cast<std::size_t>(nodes[3])];
+    Point at;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        at[axis] = (weights[0] * a[axis] + weights[1] * b[axis]) + (weights[2] * c[axis] + weights[3] * d[axis]);
+    }
+    return at;
+}
+
 /// Where points are: places[p] = sum_k weights[p][k] positions[nodes[p][k]]. Nothing is allocated; blocks of points are
 /// parts of the spans, and may run at the same time. The first three must have the same length, and nodes numbers of
 /// positions.

@@ -22,7 +22,7 @@ void BodyContactFinder::find(Scheduler& scheduler, std::span<const MotionSnapsho
                                kind_);
             solid.version = surface.version;
         }
-        place(scheduler, surface.solid->points, snapshots[k]->positions, solid.positions);
+        surface.solid->points.place(scheduler, snapshots[k]->positions, solid.positions);
         solid.body->update(solid.positions);
         solid.box = box_around(solid.positions);
     }

@@ -204,6 +204,7 @@ class Simulation {
     Rate frame_rate_, collision_rate_;
     bool frame_is_due_ = false, collision_is_due_ = false;
     std::vector<Snapshots<MotionSnapshot>::Reader> before_;  ///< [body] the state that the step starts from
+    std::vector<SurfaceEvaluator> evaluators_;               ///< [body]
     std::vector<TouchableSurface> touchable_;                ///< [body]
     std::optional<BodyContactFinder> body_contact_finder_;
     std::vector<BodyContact> body_contacts_, found_body_contacts_;  ///< acting, and found by the collision task

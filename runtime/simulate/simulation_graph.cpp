@@ -51,6 +51,7 @@ void Simulation::build_graph() {
     const bool has_tools = !tools_.empty(), collides = bodies_collide() && collision_rate_.ever();
     const bool has_snapshots = has_surfaces() || has_tools || collides;
     before_.resize(bodies_.size());
+    evaluators_.resize(bodies_.size());
     body_contact_finder_.reset();
     if (collides) body_contact_finder_.emplace(bodies_, options_.broad_phase);
 

@@ -130,7 +130,7 @@ void Simulation::evaluate_surface(std::size_t number) {
     shape->surface = snapshot->surface;
     shape->step = snapshot->step;
     shape->time = snapshot->time;
-    evaluate(*scheduler_, *snapshot->surface, snapshot->positions, *shape);
+    evaluators_[number].evaluate(*scheduler_, *snapshot->surface, snapshot->positions, *shape);
     bodies_[number]->shapes().publish();
 }
 

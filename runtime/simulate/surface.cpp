@@ -3,20 +3,20 @@
 #include <algorithm>
 
 #include "lancet/mesh/boundary.hpp"
-#include "lancet/mesh/embed/embedding.hpp"
+#include "lancet/mesh/surface/corner_normals.hpp"
 
 namespace lancet::runtime {
 
 namespace {
 
-constexpr std::size_t points_per_block = 1024;
+/// Some tens of microseconds of work, whatever the number of threads.
+constexpr std::size_t per_block = 1024;
 
 template <class Body>
-void for_each_block_of_points(Scheduler& scheduler, std::size_t points, const Body& body) {
-    const auto blocks = static_cast<int>((points + points_per_block - 1) / points_per_block);
-    scheduler.for_each_block(blocks, [&](int block) {
-        const std::size_t begin = static_cast<std::size_t>(block) * points_per_block;
-        body(begin, std::min(points, begin + points_per_block));
+void for_each_range(Scheduler& scheduler, std::size_t size, const Body& body) {
+    scheduler.for_each_block(static_cast<int>((size + per_block - 1) / per_block), [&](int block) {
+        const std::size_t begin = static_cast<std::size_t>(block) * per_block;
+        body(begin, std::min(size, begin + per_block));
     });
 }
 
@@ -123,20 +123,17 @@ CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& g
     return solid;
 }
 
-void place(Scheduler& scheduler, const CarriedPoints& points, std::span<const Point> nodes, std::vector<Point>& out) {
-    out.resize(points.size());
-    for_each_block_of_points(scheduler, out.size(), [&](std::size_t begin, std::size_t end) {
-        const std::size_t count = end - begin;
-        mesh::place(std::span(points.nodes).subspan(begin, count), std::span(points.weights).subspan(begin, count),
-                    nodes, std::span(out).subspan(begin, count));
+void SurfaceEvaluator::evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes,
+                                SurfaceShape& out) {
+    surface.vertices.place(scheduler, nodes, out.positions);
+    corner_normals_.resize(3 * surface.triangles.size());
+    for_each_range(scheduler, surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
+        mesh::corner_normals(std::span(surface.triangles).subspan(begin, end - begin), out.positions,
+                             std::span(corner_normals_).subspan(3 * begin, 3 * (end - begin)));
     });
-}
-
-void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out) {
-    place(scheduler, surface.vertices, nodes, out.positions);
     out.normals.resize(out.positions.size());
-    for_each_block_of_points(scheduler, out.normals.size(), [&](std::size_t begin, std::size_t end) {
-        mesh::vertex_normals(surface.corners, out.positions, begin, end, out.normals);
+    for_each_range(scheduler, out.normals.size(), [&](std::size_t begin, std::size_t end) {
+        mesh::add_corner_normals(surface.corners, corner_normals_, begin, end, out.normals);
     });
 }
 

@@ -9,25 +9,9 @@
 #include "lancet/mesh/cut/part_geometry.hpp"
 #include "lancet/mesh/embed/embedded_surface.hpp"
 #include "lancet/mesh/surface/vertex_normals.hpp"
-#include "lancet/runtime/schedule/scheduler.hpp"
+#include "lancet/runtime/simulate/carried_points.hpp"
 
 namespace lancet::runtime {
-
-using mesh::Point;
-
-/// Points that a body carries: each is a point of the material.
-struct CarriedPoints {
-    std::vector<std::int32_t> parts;         ///< [point] that carry it; of a mesh without cuts the elements
-    std::vector<mesh::Tetrahedron> nodes;    ///< [point] of the body: those of the part
-    std::vector<mesh::Barycentric> weights;  ///< [point] of them
-
-    std::size_t size() const noexcept { return parts.size(); }
-    void add(const mesh::MaterialPoint& point, const mesh::Tetrahedron& of_part) {
-        parts.push_back(point.part);
-        nodes.push_back(of_part);
-        weights.push_back(point.weights);
-    }
-};
 
 /// What is solid of a body, for collisions: all pieces as tetrahedra, and their surface.
 struct CarriedSolid {
@@ -71,9 +55,14 @@ CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine);
 CarriedSolid carried_solid(const mesh::TetMesh& mesh);
 CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry);
 
-/// Finds the places of points from those of the body's nodes; allocates only where there are more than before.
-void place(Scheduler& scheduler, const CarriedPoints& points, std::span<const Point> nodes, std::vector<Point>& out);
-/// Positions and normals.
-void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out);
+/// Finds out how surfaces lie, one after the other.
+class SurfaceEvaluator {
+  public:
+    /// Positions and normals from the places of the body's nodes. Allocates only where there are more than before.
+    void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out);
+
+  private:
+    std::vector<Point> corner_normals_;  ///< see mesh::corner_normals
+};
 
 }  // namespace lancet::runtime

@@ -20,7 +20,7 @@ Box box_around(const ToolMotion& motion) {
 }  // namespace
 
 void TouchableSurface::update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes) {
-    place(scheduler, surface.vertices, nodes, positions_);
+    surface.vertices.place(scheduler, nodes, positions_);
     box_ = runtime::box_around(positions_);
     boxes_are_old_ = true;
 }
