@@ -148,6 +148,11 @@ class BodyOf final : public DeformableBody {
         scatter_to_internal(loads, loads_.nodal);
     }
 
+    void set_load(std::int32_t node, const Point& load) override {
+        require_finite(std::span(&load, 1), "load");
+        std::copy_n(load.begin(), 3, &loads_.nodal[4 * static_cast<std::size_t>(internal_node(node))]);
+    }
+
     void hold(std::int32_t node, const Point& target) override { add_hold(node, target, {0, 0, 0}); }
 
     void hold(std::int32_t node, const Point& target, const Point& direction) override {
@@ -464,8 +469,8 @@ class BodyOf final : public DeformableBody {
     void gather_to_user(const kernels::AlignedVector<double>& nodal, std::span<Point> values) const {
         require_count(values.size(), "places");
         for (std::size_t node = 0; node < values.size(); ++node) {
-            std::copy_n(&nodal[4 * static_cast<std::size_t>(numbering_.internal_of_user[node])], 3,
-                        values[node].begin());
+            const double* const from = &nodal[4 * static_cast<std::size_t>(numbering_.internal_of_user[node])];
+            values[node] = {from[0], from[1], from[2]};
         }
     }
 

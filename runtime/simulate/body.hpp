@@ -115,6 +115,8 @@ class DeformableBody {
     virtual void set_velocities(std::span<const Point> velocities) = 0;
     /// Dead loads on nodes, newtons, one per node; they stay until replaced. Loads on fixed nodes do no work.
     virtual void set_loads(std::span<const Point> loads) = 0;
+    /// The same for one node. Throws lancet::Error for a node that does not exist and a load that is not finite.
+    virtual void set_load(std::int32_t node, const Point& load) = 0;
 
     /// From the next step on the node moves towards `target` so as to be there at the end of the step, in the
     /// directions normal to nothing (all three) or, with a unit `direction`, along it alone. Replaces an earlier hold

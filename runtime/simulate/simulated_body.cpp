@@ -44,6 +44,7 @@ SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const
     // A regular tetrahedron of edge a has the volume a^3 / (6 sqrt 2).
     element_size_ = std::cbrt(mesh.volume() / static_cast<double>(mesh.tetrahedra().size()) * 6 * std::numbers::sqrt2);
     scene_loads_ = external_loads(definition_.scene);
+    start_loads();
     find_mean_mass();
 }
 
@@ -66,6 +67,9 @@ CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& h
     if (update.mesh.touched_elements > 0) {
         ++cuts_;
         scene_loads_ = cuttable_->loads();
+        // What was collected for the last step is on nodes that may have gone.
+        start_loads();
+        body().set_loads(loads_);
         find_mean_mass();
         wake();
     }
@@ -93,31 +97,44 @@ void SimulatedBody::renew_surface(bool is_solid) {
     surface_cuts_ = cuts_;
 }
 
+void SimulatedBody::start_loads() {
+    loads_ = scene_loads_;
+    is_forced_.assign(loads_.size(), 0);
+    forced_.clear();
+    was_forced_.clear();
+}
+
 void SimulatedBody::set_loads(std::span<const Point> loads) {
     body().set_loads(loads);
     scene_loads_.assign(loads.begin(), loads.end());
-    loads_ = scene_loads_;
+    start_loads();
     wake();
 }
 
 void SimulatedBody::clear_forces() {
-    had_forces_ = has_forces_;
-    has_forces_ = false;
-    if (had_forces_ || loads_.size() != scene_loads_.size()) loads_ = scene_loads_;
+    for (const std::int32_t node : forced_) {
+        loads_[static_cast<std::size_t>(node)] = scene_loads_[static_cast<std::size_t>(node)];
+        is_forced_[static_cast<std::size_t>(node)] = 0;
+    }
+    was_forced_.swap(forced_);
+    forced_.clear();
 }
 
 void SimulatedBody::add_force(const AttachedPoint& point, const Point& force, bool wakes) {
     if (force == Point{}) return;
-    has_forces_ = true;
     if (wakes) wake();
     for_each_node(point, [&](std::int32_t node, double weight) {
-        Point& load = loads_[static_cast<std::size_t>(node)];
-        for (std::size_t axis = 0; axis < 3; ++axis) load[axis] += weight * force[axis];
+        const auto at = static_cast<std::size_t>(node);
+        if (is_forced_[at] == 0) forced_.push_back(node);
+        is_forced_[at] = 1;
+        for (std::size_t axis = 0; axis < 3; ++axis) loads_[at][axis] += weight * force[axis];
     });
 }
 
 void SimulatedBody::apply_forces() {
-    if (has_forces_ || had_forces_) body().set_loads(loads_);
+    for (const auto* nodes : {&was_forced_, &forced_}) {
+        for (const std::int32_t node : *nodes) body().set_load(node, loads_[static_cast<std::size_t>(node)]);
+    }
 }
 
 Point SimulatedBody::position(const AttachedPoint& point) const {
@@ -130,10 +147,7 @@ Point SimulatedBody::position(const AttachedPoint& point) const {
 }
 
 void SimulatedBody::stiffen(std::span<ToolSpring> springs, double h) {
-    double mass = 0;
-    for (std::size_t node = 0; node < body().nodes(); ++node)
-        mass += body().nodal_mass(static_cast<std::int32_t>(node));
-    const double stiffness = mass / static_cast<double>(body().nodes()) / (2 * h * h);
+    const double stiffness = mean_mass_ / (2 * h * h);
     shares_.resize(body().nodes());
     for (ToolSpring& spring : springs) {
         spring.stiffness = spring.share * stiffness;

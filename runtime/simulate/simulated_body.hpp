@@ -127,6 +127,8 @@ class SimulatedBody {
 
   private:
     void find_mean_mass();
+    /// Forgets collected forces: the loads are those of the scene.
+    void start_loads();
     const mesh::Tetrahedron& nodes_of(std::int32_t part) const {
         return cuttable_ ? cuttable_->mesh().parts()[static_cast<std::size_t>(part)]
                          : definition_.scene.mesh.tetrahedra()[static_cast<std::size_t>(part)];
@@ -144,10 +146,12 @@ class SimulatedBody {
     std::int64_t cuts_ = 0;           ///< that have changed something
     std::int64_t surface_cuts_ = -1;  ///< that the surface shows
     std::vector<Point> scene_loads_;  ///< [node of the body]
-    std::vector<Point> loads_;
-    bool has_forces_ = false, had_forces_ = false;
-    double mean_mass_ = 0;        ///< of the nodes, kg
-    std::vector<double> shares_;  ///< [node] of springs, while they are stiffened
+    std::vector<Point> loads_;        ///< [node of the body] with the collected forces
+    /// The nodes with collected forces, and those that had some in the last step: the others' loads do not change.
+    std::vector<std::int32_t> forced_, was_forced_;
+    std::vector<std::uint8_t> is_forced_;  ///< [node of the body]
+    double mean_mass_ = 0;                 ///< of the nodes, kg
+    std::vector<double> shares_;           ///< [node] of springs, while they are stiffened
     Snapshots<MotionSnapshot> snapshots_;
     Snapshots<SurfaceShape> shapes_;
     std::vector<Point> velocities_;  ///< where bodies may sleep
