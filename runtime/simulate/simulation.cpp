@@ -182,6 +182,18 @@ FrameStatistics Simulation::frame_statistics() const {
             .dropped = frames_dropped_};
 }
 
+CutStatistics Simulation::cut_statistics() const noexcept {
+    CutStatistics all;
+    for (const CutStatistics& of_body : cut_statistics_) {
+        all.cuts += of_body.cuts;
+        all.elements += of_body.elements;
+        all.copies += of_body.copies;
+        all.seconds += of_body.seconds;
+        all.longest = std::max(all.longest, of_body.longest);
+    }
+    return all;
+}
+
 Simulation::Tool& Simulation::tool_at(int tool) {
     return const_cast<Tool&>(std::as_const(*this).tool_at(tool));
 }

@@ -134,7 +134,7 @@ class Simulation {
     FrameStatistics frame_statistics() const;
     /// How often contacts have been looked for.
     std::int64_t collisions() const noexcept { return collisions_; }
-    CutStatistics cut_statistics() const noexcept { return cut_statistics_; }
+    CutStatistics cut_statistics() const noexcept;
 
   private:
     struct Tool {
@@ -147,11 +147,10 @@ class Simulation {
         ToolSample now;     ///< at the end of this step
         ToolSample before;  ///< at the end of the last
         bool is_placed = false;
-        std::vector<Blade> blades;     ///< [body]
-        std::vector<bool> is_cutting;  ///< [body]
-        std::vector<Segment> axis;     ///< of its shape in space, now
-        std::optional<Pose> tested;    ///< where contacts were last looked for
-        ToolMotion motion;             ///< from there
+        std::vector<Blade> blades;   ///< [body]: it is drawn through them at the same time
+        std::vector<Segment> axis;   ///< of its shape in space, now
+        std::optional<Pose> tested;  ///< where contacts were last looked for
+        ToolMotion motion;           ///< from there
         std::vector<ToolSpring> grabs;
         std::vector<ToolSpring> contacts;
         std::vector<ToolSpring> found;  ///< contacts, by the collision task; taken up by the next step
@@ -169,6 +168,8 @@ class Simulation {
     Task add_steps(int body, const std::optional<Task>& before);
     bool has_surfaces() const noexcept { return frame_thread_ != nullptr || keeps_surfaces_; }
     bool has_blade() const noexcept;
+    /// Makes what is kept for each body, so that the tasks of different bodies change nothing in common.
+    void make_room_for_bodies();
 
     void take_input();
     void cut(SimulatedBody& body, std::size_t number);
@@ -211,7 +212,7 @@ class Simulation {
     std::vector<Snapshots<MotionSnapshot>::Reader> held_;           ///< [body] by the search for contacts of bodies
     std::vector<const MotionSnapshot*> seen_;                       ///< [body] likewise
     std::int64_t collisions_ = 0, frames_due_ = 0, frames_dropped_ = 0;
-    CutStatistics cut_statistics_;
+    std::vector<CutStatistics> cut_statistics_;  ///< [body]: the bodies are cut at the same time
 };
 
 }  // namespace lancet::runtime

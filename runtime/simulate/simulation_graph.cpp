@@ -46,12 +46,23 @@ StepGraph::Task Simulation::add_steps(int number, const std::optional<Task>& bef
     return *last;
 }
 
+void Simulation::make_room_for_bodies() {
+    before_.resize(bodies_.size());
+    evaluators_.resize(bodies_.size());
+    cut_statistics_.resize(bodies_.size());
+    for (const auto& tool : tools_) {
+        if (!tool->definition.blade) continue;
+        while (tool->blades.size() < bodies_.size()) {
+            tool->blades.emplace_back(8, bodies_[tool->blades.size()]->element_size() / 2);
+        }
+    }
+}
+
 void Simulation::build_graph() {
     graph_ = StepGraph();
     const bool has_tools = !tools_.empty(), collides = bodies_collide() && collision_rate_.ever();
     const bool has_snapshots = has_surfaces() || has_tools || collides;
-    before_.resize(bodies_.size());
-    evaluators_.resize(bodies_.size());
+    make_room_for_bodies();
     body_contact_finder_.reset();
     if (collides) body_contact_finder_.emplace(bodies_, options_.broad_phase);
 

@@ -40,9 +40,6 @@ void Simulation::take_input() {
 void Simulation::cut(SimulatedBody& body, std::size_t number) {
     for (const auto& tool : tools_) {
         if (!tool->definition.blade || !tool->is_placed) continue;
-        while (tool->blades.size() < bodies_.size()) {
-            tool->blades.emplace_back(8, bodies_[tool->blades.size()]->element_size() / 2);
-        }
         Blade& blade = tool->blades[number];
         for (std::size_t k = 0; k < tool->samples.size(); ++k) {
             const ToolSample& sample = tool->samples[k];
@@ -58,11 +55,12 @@ void Simulation::cut(SimulatedBody& body, std::size_t number) {
             const CutUpdate update = body.draw(blade, *scheduler_, place(sample.pose, heel), place(sample.pose, tip));
             if (update.mesh.touched_elements == 0) continue;
             const double seconds = steady_seconds() - start;
-            ++cut_statistics_.cuts;
-            cut_statistics_.elements += update.mesh.divided_elements;
-            cut_statistics_.copies += update.mesh.new_copies;
-            cut_statistics_.seconds += seconds;
-            cut_statistics_.longest = std::max(cut_statistics_.longest, seconds);
+            CutStatistics& statistics = cut_statistics_[number];
+            ++statistics.cuts;
+            statistics.elements += update.mesh.divided_elements;
+            statistics.copies += update.mesh.new_copies;
+            statistics.seconds += seconds;
+            statistics.longest = std::max(statistics.longest, seconds);
         }
     }
 }
