@@ -1,4 +1,6 @@
 // What a blade does to bodies.
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "tests/runtime/simulate/simulated_bars.hpp"
@@ -72,6 +74,8 @@ void expect_rest_of_forces_to_end(bool is_pushed, double room) {
     BodyDefinition definition = bar("bar", false);
     definition.can_be_cut = true;
     definition.cuts.room = room;
+    // It would take a rise of the energy by rounding for one that has to be slowed down.
+    definition.settings.energy_safeguard = false;
     simulation.add_body(std::move(definition));
     const int probe = simulation.add_tool({.name = "probe", .shape = SphereTool{.radius = 0.05}});
     const int blade =
@@ -87,26 +91,42 @@ void expect_rest_of_forces_to_end(bool is_pushed, double room) {
         }
         return sum;
     };
-    constexpr double load = 1e-2;
-    body.set_loads(std::vector<Point>(body.body().nodes(), Point{0, 0, load}));
-    const double impulse = 3 * time_step * load * static_cast<double>(body.body().nodes());
-    // What a solve that is not converged loses of it.
-    const double lost = 0.05 * impulse;
-    if (is_pushed) simulation.move(probe, {.position = {0.7, 0.24, 0.1}}, ToolAction::touch);
-    for (int step = 0; step < 3; ++step) simulation.step();
-    EXPECT_EQ(momentum()[1] < -lost, is_pushed);
-    EXPECT_NEAR(momentum()[2], impulse, lost);
-    for (const double z : {-0.3, 0.3}) {
-        simulation.move(blade, {.position = {0.43, 0, z}}, ToolAction::cut);
+    const mesh::TetMesh mesh = bar("bar").scene.mesh;
+    const auto nodes = mesh.nodes();
+    const auto touched = static_cast<std::int32_t>(
+        std::ranges::find_if(nodes, [](const Point& at) { return at[0] > 0.65 && at[1] > 0.15 && at[2] > 0.05; }) -
+        nodes.begin());
+    for (const double x : {0.43, 0.23}) {
+        constexpr double load = 1e-2;
+        const Point at_first = momentum();
+        body.set_loads(std::vector<Point>(body.body().nodes(), Point{0, 0, load}));
+        const double impulse = 3 * time_step * load * static_cast<double>(body.body().nodes());
+        // What a solve that is not converged loses of it.
+        const double lost = 0.05 * impulse;
+        const auto press = [&](ToolAction action) {
+            if (!is_pushed) return;
+            Point above = body.body().position(touched);
+            above[1] += 0.04;
+            simulation.move(probe, {.position = above}, action);
+        };
+        press(ToolAction::touch);
+        for (int step = 0; step < 3; ++step) simulation.step();
+        EXPECT_EQ(momentum()[1] - at_first[1] < -lost, is_pushed);
+        EXPECT_NEAR(momentum()[2] - at_first[2], impulse, lost);
+        const std::int64_t copies = simulation.cut_statistics().copies;
+        for (const double z : {-0.3, 0.5}) {
+            simulation.move(blade, {.position = {x, 0, z}}, ToolAction::cut);
+            simulation.step();
+        }
+        EXPECT_GT(simulation.cut_statistics().copies, copies);
+        press(ToolAction::idle);
+        simulation.move(blade, {.position = {x, 0, 5}}, ToolAction::idle);
         simulation.step();
+        const Point before = momentum();
+        for (int step = 0; step < 3; ++step) simulation.step();
+        const Point after = momentum();
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(after[axis], before[axis], lost) << axis;
     }
-    EXPECT_GT(simulation.cut_statistics().copies, 0);
-    simulation.move(probe, {.position = {0.7, 5, 0.1}}, ToolAction::idle);
-    simulation.step();
-    const Point before = momentum();
-    for (int step = 0; step < 3; ++step) simulation.step();
-    const Point after = momentum();
-    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(after[axis], before[axis], lost) << axis;
 }
 
 TEST(SimulatedCut, AfterItTheLoadsAreThoseOfTheSceneAndContactsLeaveNothingBehind) {
