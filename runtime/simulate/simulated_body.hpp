@@ -118,7 +118,7 @@ class SimulatedBody {
     /// Takes a snapshot of the motion: what latest() returns until the next.
     void publish(std::int64_t step, double time);
     Snapshots<MotionSnapshot>::Reader latest() noexcept { return snapshots_.latest(); }
-    Snapshots<SurfaceShape>& shapes() noexcept { return shapes_; }
+    SurfaceSnapshots& shapes() noexcept { return shapes_; }
 
     /// Falls asleep, or counts towards it, after a world step.
     void rest(double world_step);
@@ -153,7 +153,7 @@ class SimulatedBody {
     double mean_mass_ = 0;                 ///< of the nodes, kg
     std::vector<double> shares_;           ///< [node] of springs, while they are stiffened
     Snapshots<MotionSnapshot> snapshots_;
-    Snapshots<SurfaceShape> shapes_;
+    SurfaceSnapshots shapes_;
     std::vector<Point> velocities_;  ///< where bodies may sleep
     double rested_ = 0;              ///< s
     bool is_asleep_ = false;

@@ -154,7 +154,7 @@ SimulatedBody& Simulation::body(int body) {
     return *bodies_[static_cast<std::size_t>(body)];
 }
 
-Snapshots<SurfaceShape>::Reader Simulation::latest_surface(int body) {
+SurfaceSnapshots::Reader Simulation::latest_surface(int body) {
     return this->body(body).shapes().latest();
 }
 

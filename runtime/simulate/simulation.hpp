@@ -30,7 +30,7 @@ struct SimulationOptions {
     std::array<double, 3> gravity{0, -9.81, 0};              ///< m / s^2
     double frame_rate = 30;                                  ///< Hz of simulated time
     double collision_rate = 200;                             ///< Hz of simulated time
-    BroadPhaseKind broad_phase = BroadPhaseKind::aabb_tree;  ///< of bodies, and of more than one tool
+    BroadPhaseKind broad_phase = BroadPhaseKind::aabb_tree;  ///< of bodies
     FramePolicy frames = FramePolicy::drop;
     /// Surfaces, frames and collision work on the state that a step starts from, beside its solve; what they find acts
     /// in the step after. Without it they follow on the solve.
@@ -122,7 +122,7 @@ class Simulation {
     int bodies() const noexcept { return static_cast<int>(bodies_.size()); }
     SimulatedBody& body(int body);
     /// The latest surface; empty before the first. From any thread.
-    Snapshots<SurfaceShape>::Reader latest_surface(int body);
+    SurfaceSnapshots::Reader latest_surface(int body);
     /// The force on a tool at a pose, by the model of the last step; zero before the first. From any thread.
     Wrench force(int tool, const Pose& pose);
     /// The model itself; empty before the first. From any thread.

@@ -49,6 +49,7 @@ StepGraph::Task Simulation::add_steps(int number, const std::optional<Task>& bef
 void Simulation::make_room_for_bodies() {
     before_.resize(bodies_.size());
     evaluators_.resize(bodies_.size());
+    touchable_.resize(bodies_.size());
     cut_statistics_.resize(bodies_.size());
     for (const auto& tool : tools_) {
         if (!tool->definition.blade) continue;

@@ -142,13 +142,13 @@ void Simulation::make_frame() {
         return;
     }
     frame->number = number;
-    frame->bodies.resize(bodies_.size());
+    frame->bodies.reset(bodies_.size());
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
-        if (const auto shape = bodies_[body]->shapes().latest()) {
-            frame->bodies[body] = *shape;
-            frame->step = shape->step;
-            frame->time = shape->time;
-        }
+        auto shape = bodies_[body]->shapes().latest();
+        if (!shape) continue;
+        frame->step = shape->step;
+        frame->time = shape->time;
+        frame->bodies.hold(body, std::move(shape));
     }
     frame->input_stamp = 0;
     frame->tools.clear();

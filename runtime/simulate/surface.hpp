@@ -10,6 +10,7 @@
 #include "lancet/mesh/embed/embedded_surface.hpp"
 #include "lancet/mesh/surface/vertex_normals.hpp"
 #include "lancet/runtime/simulate/carried_points.hpp"
+#include "lancet/runtime/simulate/snapshots.hpp"
 
 namespace lancet::runtime {
 
@@ -45,6 +46,9 @@ struct SurfaceShape {
     std::vector<Point> positions;  ///< [vertex] metres
     std::vector<Point> normals;    ///< [vertex] of unit length, smooth (see mesh::vertex_normals)
 };
+
+/// The shapes of a body's surface. One slot more than others have: a frame holds a shape until the next one comes.
+using SurfaceSnapshots = Snapshots<SurfaceShape, 6>;
 
 /// The boundary of a mesh: every vertex is a node, every part an element.
 CarriedSurface boundary_surface(const mesh::TetMesh& mesh);

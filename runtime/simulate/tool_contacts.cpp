@@ -57,10 +57,9 @@ void Simulation::find_tool_contacts() {
         found.clear();
     }
     if (!collision_is_due_) return;
-    // Refitting a tree costs more than asking every box for one tool.
-    const BroadPhaseKind kind = tools_.size() > 1 ? options_.broad_phase : BroadPhaseKind::brute_force;
-    while (touchable_.size() < bodies_.size()) touchable_.emplace_back(kind);
+    bool is_any_felt = false;
     for (const auto& tool : tools_) {
+        is_any_felt = is_any_felt || tool->is_felt();
         // A tool that has gone through everything is not on its way from anywhere.
         if (!tool->is_felt()) {
             tool->tested.reset();
@@ -73,6 +72,7 @@ void Simulation::find_tool_contacts() {
             }
         }
     }
+    if (!is_any_felt) return;
     for (std::size_t number = 0; number < bodies_.size(); ++number) {
         Snapshots<MotionSnapshot>::Reader reader;
         const MotionSnapshot* snapshot = seen(number, reader);

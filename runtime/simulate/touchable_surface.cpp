@@ -17,36 +17,63 @@ Box box_around(const ToolMotion& motion) {
     return box;
 }
 
+/// The sides of a box beyond which a point lies, a bit for each. A triangle with all corners beyond one of them has a
+/// box that does not touch this one.
+std::uint8_t sides_beyond(const Box& box, const Point& point) {
+    unsigned sides = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        sides |= (point[axis] < box.lower[axis] ? 1U : 0U) << 2 * axis;
+        sides |= (point[axis] > box.upper[axis] ? 2U : 0U) << 2 * axis;
+    }
+    return static_cast<std::uint8_t>(sides);
+}
+
 }  // namespace
 
 void TouchableSurface::update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes) {
     surface.vertices.place(scheduler, nodes, positions_);
     box_ = runtime::box_around(positions_);
-    boxes_are_old_ = true;
 }
 
-void TouchableSurface::update_boxes(const CarriedSurface& surface) {
-    boxes_.resize(surface.triangles.size());
-    for (std::size_t triangle = 0; triangle < boxes_.size(); ++triangle) {
-        const auto& [a, b, c] = surface.triangles[triangle];
-        boxes_[triangle] = runtime::box_around(std::array{positions_[static_cast<std::size_t>(a)],
-                                                          positions_[static_cast<std::size_t>(b)],
-                                                          positions_[static_cast<std::size_t>(c)]});
-    }
-    if (version_ == surface.version) {
-        triangles_near_->refit(boxes_);
-    } else {
-        triangles_near_->build(boxes_);
+void TouchableSurface::find_near(const CarriedSurface& surface, const Box& box) {
+    if (version_ != surface.version) {
+        // Room for all triangles at once: later calls allocate nothing.
+        numbers_.reserve(surface.triangles.size());
+        near_.reserve(surface.triangles.size());
+        boxes_.assign(surface.triangles.size(), empty_box);
+        boxes_near_->build(boxes_);
         version_ = surface.version;
     }
-    boxes_are_old_ = false;
+    sides_.resize(positions_.size());
+    for (std::size_t vertex = 0; vertex < positions_.size(); ++vertex) {
+        sides_[vertex] = sides_beyond(box, positions_[vertex]);
+    }
+    numbers_.clear();
+    near_.clear();
+    const auto sides = [&](std::int32_t vertex) { return sides_[static_cast<std::size_t>(vertex)]; };
+    for (std::size_t number = 0; number < surface.triangles.size(); ++number) {
+        const mesh::Triangle& triangle = surface.triangles[number];
+        if ((sides(triangle[0]) & sides(triangle[1]) & sides(triangle[2])) != 0) continue;
+        numbers_.push_back(static_cast<std::int32_t>(number));
+        near_.push_back(triangle);
+    }
+    boxes_.resize(near_.size());
+    boxes_around<mesh::Triangle>(positions_, near_, 0, boxes_);
+    boxes_near_->build(boxes_);
 }
 
 std::span<const ToolContact> TouchableSurface::contacts(const CarriedSurface& surface, const ToolMotion& motion) {
     // A box that is not valid, of a vertex that is not finite, says nothing.
-    if (is_valid(box_) && !touch(box_, box_around(motion))) return {};
-    if (boxes_are_old_) update_boxes(surface);
-    finder_.find(*triangles_near_, positions_, surface.triangles, motion, contacts_);
+    Box box = box_around(motion);
+    if (is_valid(box_) && !touch(box_, box)) return {};
+    // Wider by what counts as zero for the broad phase.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.lower[axis] -= smallest_coordinate;
+        box.upper[axis] += smallest_coordinate;
+    }
+    find_near(surface, box);
+    finder_.find(*boxes_near_, positions_, near_, motion, contacts_);
+    for (ToolContact& contact : contacts_) contact.triangle = numbers_[static_cast<std::size_t>(contact.triangle)];
     return contacts_;
 }
 

@@ -13,23 +13,28 @@ namespace lancet::runtime {
 /// A body's surface as the collision task sees it: where its vertices were, and what finds the triangles near a tool.
 class TouchableSurface {
   public:
-    explicit TouchableSurface(BroadPhaseKind kind) : triangles_near_(make_broad_phase(kind)) {}
+    TouchableSurface() : boxes_near_(make_broad_phase(BroadPhaseKind::brute_force)) {}
 
     /// Takes up where the body's nodes are.
     void update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes);
     /// The contacts of a tool that has moved; valid until the next call. Looks at single triangles only where the tool
-    /// comes into the box around all.
+    /// comes into the box around all, and closely only at those whose boxes touch the one around the tool's way: there
+    /// are few tools, and that costs less than keeping a tree of the triangles.
     std::span<const ToolContact> contacts(const CarriedSurface& surface, const ToolMotion& motion);
 
   private:
-    void update_boxes(const CarriedSurface& surface);
+    /// Finds the triangles whose boxes may touch a box.
+    void find_near(const CarriedSurface& surface, const Box& box);
 
     std::int64_t version_ = -1;
-    bool boxes_are_old_ = true;
     Box box_{};  ///< around all vertices
     std::vector<Point> positions_;
+    std::vector<std::uint8_t> sides_;  ///< [vertex] those of a box beyond which it lies, a bit for each
+    // Of the triangles that are near:
+    std::vector<std::int32_t> numbers_;
+    std::vector<mesh::Triangle> near_;
     std::vector<Box> boxes_;
-    std::unique_ptr<BroadPhase> triangles_near_;
+    std::unique_ptr<BroadPhase> boxes_near_;
     ToolContactFinder finder_;
     std::vector<ToolContact> contacts_;
 };
