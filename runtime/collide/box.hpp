@@ -82,14 +82,15 @@ inline Box unite(const Box& a, const Box& b) noexcept {
 /// The smallest box around points, wider by `margin` on each side. Not valid where a point is not finite.
 inline Box box_around(std::span<const Point> points, double margin = 0) noexcept {
     Box box = empty_box;
+    Point not_finite{};  // zero, or not a number: std::min would pass over that
     for (const Point& point : points) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            // std::min would pass over what is not a number.
-            if (!std::isfinite(point[axis])) return empty_box;
+            not_finite[axis] += point[axis] - point[axis];
             box.lower[axis] = std::min(box.lower[axis], point[axis]);
             box.upper[axis] = std::max(box.upper[axis], point[axis]);
         }
     }
+    if (!(not_finite == Point{})) return empty_box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         box.lower[axis] -= margin;
         box.upper[axis] += margin;

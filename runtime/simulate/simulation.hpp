@@ -205,6 +205,7 @@ class Simulation {
     Rate frame_rate_, collision_rate_;
     bool frame_is_due_ = false, collision_is_due_ = false;
     std::vector<Snapshots<MotionSnapshot>::Reader> before_;  ///< [body] the state that the step starts from
+    std::vector<Point> vertex_places_;                       ///< of a body that a tool may take hold of
     std::vector<SurfaceEvaluator> evaluators_;               ///< [body]
     std::vector<TouchableSurface> touchable_;                ///< [body]
     std::optional<BodyContactFinder> body_contact_finder_;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
@@ -8,6 +9,16 @@
 namespace lancet::runtime {
 
 namespace {
+
+/// Around all that is nearer than `reach` to a tool, and a little more: what is outside is farther, whatever is
+/// rounded.
+Box box_of_reach(std::span<const Segment> axis, double reach) {
+    Box box = empty_box;
+    for (const Segment& segment : axis) {
+        box = unite(box, box_around(std::array{segment.start, segment.end}, (1 + 1e-6) * reach));
+    }
+    return box;
+}
 
 /// Where a place is in the frame of a pose: R is orthogonal, its inverse the conjugate quaternion.
 Point local(const Pose& pose, const Point& place) {
@@ -28,17 +39,22 @@ AttachedPoint point_of(const CarriedSurface& surface, const ToolContact& contact
 }  // namespace
 
 void Simulation::take_hold(Tool& tool) {
-    const double reach = tool.definition.grab_distance;
+    const double reach = tool.definition.grab_distance, tool_radius = radius(tool.definition.shape);
+    const Box box = box_of_reach(tool.axis, tool_radius + reach);
     for (std::size_t number = 0; number < bodies_.size(); ++number) {
         if (!before_[number]) continue;
         SimulatedBody& body = *bodies_[number];
         const CarriedSurface& surface = *before_[number]->surface;
         const auto begin = static_cast<std::ptrdiff_t>(tool.grabs.size());
+        // Nothing has moved since: where vertices were is enough to leave out those far away.
+        surface.vertices.place(*scheduler_, before_[number]->positions, vertex_places_);
         for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex) {
+            const Point& place = vertex_places_[vertex];
+            if (!touch(box, {place, place})) continue;
             ToolSpring spring{.body = static_cast<int>(number)};
             spring.on_body.corners[0] = {surface.vertices.parts[vertex], surface.vertices.weights[vertex]};
             const Point at = body.position(spring.on_body);
-            if (tool_distance(tool.axis, radius(tool.definition.shape), at).distance > reach) continue;
+            if (tool_distance(tool.axis, tool_radius, at).distance > reach) continue;
             spring.on_tool = local(tool.now.pose, at);
             tool.grabs.push_back(spring);
         }
