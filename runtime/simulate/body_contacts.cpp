@@ -17,21 +17,31 @@ void BodyContactFinder::find(Scheduler& scheduler, std::span<const MotionSnapsho
         if (snapshots[k] == nullptr || snapshots[k]->surface->solid == nullptr) continue;
         const CarriedSurface& surface = *snapshots[k]->surface;
         Solid& solid = solids_[k];
-        if (solid.version != surface.version) {
+        const bool is_new = solid.version != surface.version;
+        if (is_new) {
             solid.body.emplace(surface.solid->points.size(), surface.solid->tetrahedra, surface.solid->triangles,
                                kind_);
             solid.version = surface.version;
         }
         surface.solid->points.place(scheduler, snapshots[k]->positions, solid.positions);
-        solid.body->update(solid.positions);
         solid.box = box_around(solid.positions);
+        // The first time at once: then it allocates.
+        if (is_new) solid.body->update(solid.positions);
+        solid.is_up_to_date = is_new;
     }
+    // What no other body is near costs no more than its box.
+    const auto update = [&](std::size_t body) {
+        if (!solids_[body].is_up_to_date) solids_[body].body->update(solids_[body].positions);
+        solids_[body].is_up_to_date = true;
+    };
     const int count = static_cast<int>(solids_.size());
     for (int first = 0; first < count; ++first) {
         for (int second = 0; second < count; ++second) {
             const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
             const bool is_wanted = first == second ? with_itself_[a] : with_others_[a] && with_others_[b];
             if (!is_wanted || !solids_[a].body || !solids_[b].body || !touch(solids_[a].box, solids_[b].box)) continue;
+            update(a);
+            update(b);
             add(scheduler, first, second, snapshots, contacts);
         }
     }

@@ -36,6 +36,7 @@ class BodyContactFinder {
         std::optional<CollidableBody> body;
         std::vector<Point> positions;
         Box box{};
+        bool is_up_to_date = false;  ///< the body with the positions
     };
     void add(Scheduler& scheduler, int first, int second, std::span<const MotionSnapshot* const> snapshots,
              std::vector<BodyContact>& contacts);
