@@ -63,7 +63,7 @@ void SimulatedBody::run(StepStage stage, Scheduler& scheduler) {
 }
 
 CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip) {
-    const CutUpdate update = blade.draw(*cuttable_, scheduler, heel, tip);
+    CutUpdate update = blade.draw(*cuttable_, scheduler, heel, tip);
     if (update.mesh.touched_elements > 0) {
         ++cuts_;
         scene_loads_ = cuttable_->loads();
