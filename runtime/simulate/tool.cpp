@@ -32,6 +32,8 @@ std::string_view to_string(ToolAction action) noexcept {
             return "grab";
         case ToolAction::cut:
             return "cut";
+        case ToolAction::idle:
+            return "idle";
         default:
             return "touch";
     }

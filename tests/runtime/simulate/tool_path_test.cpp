@@ -29,6 +29,17 @@ TEST(ToolPath, IsReadBackToTheBit) {
     EXPECT_EQ(read_tool_path(file), path);
 }
 
+TEST(ToolPath, KeepsEveryAction) {
+    ToolPath path;
+    for (const ToolAction action : {ToolAction::touch, ToolAction::grab, ToolAction::cut, ToolAction::idle}) {
+        EXPECT_EQ(tool_action_from_string(to_string(action)), action);
+        path.push_back({.time = static_cast<double>(path.size()), .action = action});
+    }
+    const auto file = std::filesystem::path(testing::TempDir()) / "lancet_tool_path_of_actions.txt";
+    write_tool_path(file, path);
+    EXPECT_EQ(read_tool_path(file), path);
+}
+
 TEST(ToolPath, ErrorsNameFileLineAndWhatWasExpected) {
     const auto error_of = [](const std::string& text) {
         try {
