@@ -341,9 +341,11 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
                                                StepReport& report, StepTotals& totals) {
     Timer timer;
     const typename StepEnergy<Real>::Inner before = inner_energy_;
+    double growth = 0;
     const auto gains = [&] {
         inner_energy_ = before;
-        return energy_.growth(scheduler, step_under(loads), motion, before_hold, inner_energy_) > 0;
+        growth = energy_.growth(scheduler, step_under(loads), motion, before_hold, inner_energy_);
+        return growth > 0;
     };
     bool gained = gains();
     timer.add_to(totals.seconds_forces);
@@ -372,9 +374,12 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
         timer.add_to(totals.seconds_forces);
     }
     // The iterations may end before they have brought the energy down. A slower motion from the same start has less of
-    // it, and in the limit of none what the body had at the start.
+    // it, and in the limit of none what the body had at the start. But a slow drift is not to be ended for the noise of
+    // forces that are rounded.
     constexpr int attempts = 24;  // 0.75^24 is 1e-3
-    if (gained && is_finite(scheduler, motion)) {
+    const double noise = energy_.noise(motion.position, before);
+    const bool is_noise = std::isfinite(noise) && growth <= noise;
+    if (gained && !is_noise && is_finite(scheduler, motion)) {
         for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
             slow_down(scheduler, motion, filter, attempt < attempts ? 0.75 : 0.0);
             move(scheduler, motion, h, motion.velocity);

@@ -148,5 +148,28 @@ TEST_P(Safeguard, StatesBeyondTheScalarAreReportedAndLeftFinite) {
     }
 }
 
+// Its kinetic energy is less than that of strains that rounding makes.
+TEST_P(Safeguard, LeavesABodyAloneThatDriftsSlowly) {
+    for (const double speed : {1e-2, 1e-4, 1e-6}) {
+        SCOPED_TRACE(speed);
+        runtime::Scene scene = scene_of(solid);
+        scene.fixed_nodes.clear();
+        scene.gravity = {0, 0, 0};
+        runtime::Settings settings;
+        settings.scalar = GetParam();
+        const auto b = make_body(scene, settings, *scheduler);
+        b->set_velocities(std::vector<mesh::Point>(b->nodes(), mesh::Point{speed, -speed, 0.3 * speed}));
+        for (int step = 0; step < 100; ++step) b->step(*scheduler);
+        std::vector<mesh::Point> velocities(b->nodes());
+        b->velocities(velocities);
+        double momentum = 0, mass = 0;
+        for (std::size_t node = 0; node < velocities.size(); ++node) {
+            momentum += b->nodal_mass(static_cast<std::int32_t>(node)) * velocities[node][0];
+            mass += b->nodal_mass(static_cast<std::int32_t>(node));
+        }
+        EXPECT_NEAR(momentum, mass * speed, 1e-3 * mass * speed);
+    }
+}
+
 }  // namespace
 }  // namespace lancet::test
