@@ -12,10 +12,6 @@ std::vector<Item> all_items(bool is_quick) {
 
 std::vector<Remark> remarks() {
     return {
-        {"rotations only where the deformation changed by more than a bound",
-         "not there: rotations are renewed for all elements, every rotation_interval steps (measured above); a bound "
-         "on "
-         "change there is for the coarse space alone (coarse_change, measured above)"},
         {"islands at rest sleep", "whole bodies sleep, not parts of one that are apart"},
         {"conjugate gradients start from the last solution",
          "no switch: the unknown is the change of velocity, from zero, and so the start is the last velocity; nothing "

@@ -24,6 +24,14 @@ std::unique_ptr<Runner> stiff(bool is_quick, runtime::ElementModel model) {
     return run_body(scene, {.model = model});
 }
 
+/// The bar in a tenth of gravity, with drag, in small steps.
+std::unique_ptr<Runner> slow(bool is_quick, double rotation_bound) {
+    runtime::Scene scene = bar(is_quick);
+    for (double& component : scene.gravity) component *= 0.1;
+    scene.rayleigh_mass = 5;
+    return run_body(scene, {.time_step = 0.005, .rotation_bound = rotation_bound});
+}
+
 runtime::Settings unguarded(int rotation_interval) {
     return {.rotation_interval = rotation_interval, .energy_safeguard = false};
 }
@@ -55,6 +63,12 @@ std::vector<Item> items_of_body(bool is_quick) {
          .with = bar_with(unguarded(5)),
          .without = bar_with(unguarded(1)),
          .note = "a unit is a step: four of five skip"},
+        {.name = "rotations only where the deformation changed",
+         .toggle = "Settings::rotation_bound = 0.02; without: 0",
+         .scene = bar_name + ", a tenth of gravity, drag, steps of 5 ms",
+         .with = [=] { return slow(is_quick, 0.02); },
+         .without = [=] { return slow(is_quick, 0); },
+         .note = "blocks of elements; what turns fast gains nothing"},
         {.name = "coarse space only where the shape changed",
          .toggle = "Settings::coarse_change = 0.2; without: 0",
          .scene = bar_name,

@@ -142,7 +142,7 @@ LargestEigenvalue ExplicitStep<Real>::largest_eigenvalue(Scheduler& scheduler, c
                                                          double tolerance) {
     MatrixFree<Real> stiffness(*elements_, {.tetrahedra = {}, .nodal_mass = mass_});
     elements_->evaluate(scheduler, position, {.rotation = !is_linear(), .force = false, .energy = false});
-    stiffness.assemble(scheduler, {.mass = 0, .stiffness = 1});
+    stiffness.assemble(scheduler, {.mass = 0, .stiffness = 1}, false);
     return runtime::largest_eigenvalue(scheduler, static_cast<Operator<Real>&>(stiffness), *numbering_, mass_,
                                        tolerance);
 }

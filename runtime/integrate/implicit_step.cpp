@@ -46,7 +46,9 @@ ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, co
       held_impulse_(inertia_.consistent.empty() ? 0 : inertia_.row_sums.size() * 4),
       right_hand_side_(inertia_.row_sums.size() * 4),
       change_(inertia_.row_sums.size() * 4),
-      partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
+      partial_(static_cast<std::size_t>(elements.numbering().blocks())) {
+    if (settings.rotation_bound > 0 && !is_linear()) elements.watch_deformation();
+}
 
 template <class Real, class Accumulate>
 double ImplicitStep<Real, Accumulate>::position_length() const noexcept {
@@ -105,7 +107,8 @@ bool ImplicitStep<Real, Accumulate>::evaluate(Scheduler& scheduler, const double
                         {.rotation = rotate,
                          .force = true,
                          .energy = false,
-                         .start = takes_average_stress() ? start_position_.data() : nullptr});
+                         .start = takes_average_stress() ? start_position_.data() : nullptr,
+                         .rotation_bound = matrix_is_known_ ? settings_.rotation_bound : 0});
     return rotate;
 }
 
@@ -117,7 +120,8 @@ void ImplicitStep<Real, Accumulate>::assemble(Scheduler& scheduler, const BodyLo
     const bool same_factors =
         factors.mass == matrix_->factors().mass && factors.stiffness == matrix_->factors().stiffness;
     if (!rotated && matrix_is_known_ && same_factors) return;
-    matrix_->assemble(scheduler, factors);
+    matrix_->assemble(scheduler, factors, rotated && matrix_is_known_ && same_factors);
+    elements_->forget_stale_blocks();
     matrix_is_known_ = false;  // until the preconditioner has it too
 }
 
@@ -515,6 +519,7 @@ void ImplicitStep<Real, Accumulate>::begin(Scheduler& scheduler, const StepSubje
     if (!is_at_state()) move(scheduler, motion, position_length(), motion.velocity);
     timer.add_to(totals.seconds_rest);
     is_rotated_ = evaluate(scheduler, motion.position.data(), steps_since_renewal_ == 0);
+    if (is_rotated_) totals.kept_rotations += elements_->kept_blocks();
     timer.add_to(totals.seconds_forces);
 }
 

@@ -270,6 +270,7 @@ class BodyOf final : public DeformableBody {
             state.numbers_.insert(state.numbers_.end(), vector->begin(), vector->end());
         }
         step_->save(state.numbers_);
+        elements_.save_watch(state.numbers_);
         for (const auto span : {elements_.quaternions(), elements_.rotated_gradients()}) {
             const auto bytes = std::as_bytes(span);
             state.solver_.insert(state.solver_.end(), bytes.begin(), bytes.end());
@@ -301,6 +302,7 @@ class BodyOf final : public DeformableBody {
         holds_.restore(state.holds_);
         if (floor_.exists()) floor_.restore(holds_.contacts());
         step_->restore(scheduler, numbers);
+        elements_.restore_watch(numbers);
     }
 
     const Settings& settings() const noexcept override { return settings_; }

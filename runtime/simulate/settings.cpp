@@ -66,6 +66,11 @@ void validate(const Settings& settings) {
     require(settings.conjugate_gradients.tolerance >= 0 && settings.conjugate_gradients.tolerance < 1,
             "the tolerance of conjugate gradients must be in [0, 1)");
     require(settings.rotation_interval >= 1, "the rotation interval must be at least 1");
+    require(settings.rotation_bound >= 0 && std::isfinite(settings.rotation_bound),
+            "the bound on changes that rotations stay for must not be negative");
+    require(
+        settings.rotation_bound == 0 || (!is_explicit(settings.integrator) && settings.tangent == TangentKind::rotated),
+        "a rotation bound goes with implicit integrators and the rotated tangent");
     require(settings.rotation.steps >= 1, "at least one step of the rotation method is needed");
     require(settings.newton_iterations >= 1, "at least one Newton iteration is needed");
     require(settings.newton_tolerance > 0, "the Newton tolerance must be positive");

@@ -68,6 +68,9 @@ struct Settings {
     kernels::ScatterStrategy scatter = kernels::ScatterStrategy::private_copies;
     RotationSettings rotation{};
     int rotation_interval = 1;  ///< rotations and operator are renewed every so many steps
+    /// And then only in blocks of elements whose F may have changed by more than this since (Frobenius norm). 0:
+    /// everywhere. For implicit integrators and the rotated tangent.
+    double rotation_bound = 0;
     Linearisation linearisation = Linearisation::prediction;
     ConjugateGradientSettings conjugate_gradients{};
     PreconditionerKind preconditioner = PreconditionerKind::coarse;

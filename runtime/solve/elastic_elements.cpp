@@ -135,6 +135,9 @@ bool ElasticElements<Real>::change(std::int32_t& slot, const kernels::ChangedEle
 template <class Real>
 void ElasticElements<Real>::finish_changes(const double* rest_positions) {
     batches_.scatter.finish_changes();
+    if (watch_) {
+        for (const int block : changed_blocks_) watch_->change(batches_, *numbering_, block);
+    }
     std::sort(changed_blocks_.begin(), changed_blocks_.end());
     changed_blocks_.erase(std::unique(changed_blocks_.begin(), changed_blocks_.end()), changed_blocks_.end());
     if (law_.model == ElementModel::linear) {
@@ -177,8 +180,52 @@ double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* posit
         return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
     }
     const auto call = arguments(positions, wanted);
-    scatter(scheduler, wanted.force, [&](int block) { kernels_->tetrahedron.elastic(call, block); });
+    if (watch_ && wanted.rotation && wanted.keep_gradients) {
+        watch(scheduler, positions, wanted.rotation_bound);
+        auto kept = wanted;
+        kept.rotation = false;
+        const auto call_kept = arguments(positions, kept);
+        scatter(scheduler, wanted.force, [&](int block) {
+            const bool has_turned = has_turned_[static_cast<std::size_t>(block)] != 0;
+            kernels_->tetrahedron.elastic(has_turned ? call : call_kept, block);
+        });
+    } else {
+        scatter(scheduler, wanted.force, [&](int block) { kernels_->tetrahedron.elastic(call, block); });
+    }
     return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
+}
+
+template <class Real>
+void ElasticElements<Real>::watch_deformation() {
+    if (watch_ || !law_.is_rotated()) return;
+    watch_.emplace(batches_, *numbering_);
+    stale_blocks_.assign(static_cast<std::size_t>(numbering_->blocks()), 1);
+    has_turned_ = stale_blocks_;
+}
+
+template <class Real>
+void ElasticElements<Real>::watch(Scheduler& scheduler, const double* positions, double bound) {
+    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        has_turned_[static_cast<std::size_t>(block)] = watch_->has_changed(block, positions, bound) ? 1 : 0;
+    });
+    for (int block = 0; block < numbering_->blocks(); ++block) {
+        if (has_turned_[static_cast<std::size_t>(block)] == 0) continue;
+        for (const int touched : watch_->touched_blocks(block)) stale_blocks_[static_cast<std::size_t>(touched)] = 1;
+        // Rows of the room may be of any node.
+        if (numbering_->has_room()) stale_blocks_.back() = 1;
+    }
+}
+
+template <class Real>
+void ElasticElements<Real>::save_watch(std::vector<double>& numbers) const {
+    if (watch_) watch_->save(numbers);
+}
+
+template <class Real>
+void ElasticElements<Real>::restore_watch(std::span<const double>& numbers) {
+    if (!watch_) return;
+    watch_->restore(numbers);
+    std::ranges::fill(stale_blocks_, std::uint8_t{1});
 }
 
 template <class Real>
@@ -226,7 +273,8 @@ void ElasticElements<Real>::merge_force(int block) {
 template <class Real>
 std::size_t ElasticElements<Real>::bytes() const noexcept {
     using kernels::heap_bytes;
-    return batches_.bytes() + heap_bytes(quaternion_) + heap_bytes(rotated_) + heap_bytes(force_) + heap_bytes(energy_);
+    return batches_.bytes() + (watch_ ? watch_->bytes() : 0) + heap_bytes(quaternion_) + heap_bytes(rotated_) +
+           heap_bytes(force_) + heap_bytes(energy_);
 }
 
 template class ElasticElements<float>;

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "lancet/kernels/isa/kernel_set.hpp"
 #include "lancet/kernels/layout/element_batches.hpp"
 #include "lancet/runtime/schedule/scheduler.hpp"
+#include "lancet/runtime/solve/deformation_watch.hpp"
 
 namespace lancet::runtime {
 
@@ -48,6 +52,8 @@ class ElasticElements {
         const double* start = nullptr;  ///< see HyperelasticArguments::start
         bool keep_gradients = true;     ///< store the rotated gradients or element blocks; false spares what only
                                         ///< operators need
+        double rotation_bound = 0;      ///< rotations stay in blocks whose F has not changed by more since they were
+                                        ///< taken up; needs watch_deformation
     };
 
     ElasticElements(const kernels::KernelSet<Real>& kernels, kernels::ElementBatches<Real> batches,
@@ -72,6 +78,19 @@ class ElasticElements {
     /// Evaluates at `positions` (xyz_, internal numbering). The force is complete at the free nodes after
     /// `merge_force` of each block. Returns the elastic energy in joules if wanted, else 0.
     double evaluate(Scheduler& scheduler, const double* positions, const Wanted& wanted);
+
+    /// Makes what rotation_bound needs.
+    void watch_deformation();
+    /// [block of nodes] 1: rotations of elements there have been taken up since forget_stale_blocks. Empty where the
+    /// deformation is not watched.
+    std::span<const std::uint8_t> stale_blocks() const noexcept { return stale_blocks_; }
+    /// Blocks of elements whose rotations stayed in the last evaluation that could take them up.
+    std::ptrdiff_t kept_blocks() const noexcept { return std::ranges::count(has_turned_, std::uint8_t{0}); }
+    void forget_stale_blocks() noexcept { std::ranges::fill(stale_blocks_, std::uint8_t{0}); }
+
+    /// What a bit-exact continuation needs of it.
+    void save_watch(std::vector<double>& numbers) const;
+    void restore_watch(std::span<const double>& numbers);
 
     /// Completes the elastic force on the nodes of a block.
     void merge_force(int block);
@@ -109,6 +128,8 @@ class ElasticElements {
     kernels::TetrahedronArguments<Real> arguments_at_rest(const double* positions);
     kernels::HyperelasticArguments<Real> hyperelastic_arguments(const double* positions, const Wanted& wanted);
     /// Adds the elements' shares, add(block), to the force buffer, which is cleared first where `is_wanted`.
+    /// Blocks of elements whose rotations are to be taken up, into has_turned_.
+    void watch(Scheduler& scheduler, const double* positions, double bound);
     template <class Add>
     void scatter(Scheduler& scheduler, bool is_wanted, const Add& add);
 
@@ -123,6 +144,8 @@ class ElasticElements {
     kernels::AlignedVector<Real> force_;
     std::vector<double> energy_;
     std::vector<int> changed_blocks_;
+    std::optional<DeformationWatch> watch_;
+    std::vector<std::uint8_t> stale_blocks_, has_turned_;  ///< [block of nodes], [block of elements]
 };
 
 }  // namespace lancet::runtime

@@ -11,7 +11,7 @@ MatrixFree<Real>::MatrixFree(ElasticElements<Real>& elements, const OperatorDefi
 }
 
 template <class Real>
-void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors) {
+void MatrixFree<Real>::assemble(Scheduler&, const Factors& factors, bool) {
     this->set_factors(factors);
     if (mass_ != MassKind::consistent || pair_mass_factor_ == factors.mass) return;
     pair_mass_factor_ = factors.mass;

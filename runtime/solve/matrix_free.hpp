@@ -14,7 +14,7 @@ class MatrixFree final : public Operator<Real> {
     MatrixFree(ElasticElements<Real>& elements, const OperatorDefinition& definition);
 
     OperatorKind kind() const noexcept override { return OperatorKind::matrix_free; }
-    void assemble(Scheduler& scheduler, const Factors& factors) override;
+    void assemble(Scheduler& scheduler, const Factors& factors, bool only_stale) override;
     bool change(const LayoutChange& change) override;
     std::size_t bytes() const noexcept override;
     Work work() const noexcept override;

@@ -43,7 +43,9 @@ class Operator {
 
     virtual OperatorKind kind() const noexcept = 0;
     /// Takes up the rotated gradients or blocks of the elements.
-    virtual void assemble(Scheduler& scheduler, const Factors& factors) = 0;
+    /// `only_stale`: where ElasticElements::stale_blocks says so; the rest is as it was assembled last, with the same
+    /// factors.
+    virtual void assemble(Scheduler& scheduler, const Factors& factors, bool only_stale = false) = 0;
     /// Takes up elements and masses that have changed, after the elements themselves have; assemble comes next. False
     /// where there is no room, which leaves the operator unfit for use.
     virtual bool change(const LayoutChange& change);

@@ -95,7 +95,7 @@ bool BlockMatrix<Real>::change(const LayoutChange& change, std::vector<int>& blo
 }
 
 template <class Real>
-void BlockMatrix<Real>::assemble(Scheduler& scheduler, double stiffness_factor, double mass_factor) {
+void BlockMatrix<Real>::assemble(Scheduler& scheduler, double stiffness_factor, double mass_factor, bool only_stale) {
     if (mass_ == MassKind::consistent) set_entry_mass(mass_factor);
     const kernels::AssemblyArguments<Real> arguments{.block_chunk_begin = pattern_.block_chunk_begin.data(),
                                                      .chunk_entry_begin = pattern_.chunk_entry_begin.data(),
@@ -107,8 +107,12 @@ void BlockMatrix<Real>::assemble(Scheduler& scheduler, double stiffness_factor, 
                                                      .values = values_.data(),
                                                      .stiffness_factor = static_cast<Real>(stiffness_factor),
                                                      .layout = elements_->layout()};
-    scheduler.for_each_block(elements_->numbering().blocks(),
-                             [&](int block) { elements_->kernels().matrix.assemble(arguments, block); });
+    const std::span<const std::uint8_t> stale =
+        only_stale ? elements_->stale_blocks() : std::span<const std::uint8_t>();
+    scheduler.for_each_block(elements_->numbering().blocks(), [&](int block) {
+        if (!stale.empty() && stale[static_cast<std::size_t>(block)] == 0) return;
+        elements_->kernels().matrix.assemble(arguments, block);
+    });
 }
 
 template <class Real>
@@ -143,9 +147,9 @@ bool RowOperator<Real>::change(const LayoutChange& change) {
 }
 
 template <class Real>
-void RowOperator<Real>::assemble(Scheduler& scheduler, const Factors& factors) {
+void RowOperator<Real>::assemble(Scheduler& scheduler, const Factors& factors, bool only_stale) {
     this->set_factors(factors);
-    matrix_.assemble(scheduler, factors.stiffness, factors.mass);
+    matrix_.assemble(scheduler, factors.stiffness, factors.mass, only_stale);
 }
 
 template <class Real>

@@ -15,7 +15,7 @@ class BlockMatrix {
     BlockMatrix(kernels::RowContent content, ElasticElements<Real>& elements, const OperatorDefinition& definition);
 
     /// values = stiffness_factor K (+ mass_factor M where the definition's mass is consistent) for every block stored.
-    void assemble(Scheduler& scheduler, double stiffness_factor, double mass_factor);
+    void assemble(Scheduler& scheduler, double stiffness_factor, double mass_factor, bool only_stale = false);
 
     /// Takes up elements that have changed, after the elements themselves have; of content upper_edges only. False
     /// where there is no room. `blocks` receives the blocks of rows that have changed.
@@ -50,7 +50,7 @@ class RowOperator final : public Operator<Real> {
     RowOperator(OperatorKind kind, ElasticElements<Real>& elements, const OperatorDefinition& definition);
 
     OperatorKind kind() const noexcept override { return kind_; }
-    void assemble(Scheduler& scheduler, const Factors& factors) override;
+    void assemble(Scheduler& scheduler, const Factors& factors, bool only_stale) override;
     std::size_t bytes() const noexcept override;
     Work work() const noexcept override;
 

@@ -100,6 +100,9 @@ TEST(BadSettings, AreRefused) {
         expect_bad_settings([&](auto& s) { s.conjugate_gradients.tolerance = tolerance; }, "tolerance");
     }
     expect_bad_settings([](auto& s) { s.rotation_interval = 0; }, "rotation interval");
+    expect_bad_settings([](auto& s) { s.rotation_bound = -1; }, "rotations stay");
+    expect_bad_settings([](auto& s) { s.rotation_bound = 0.1, s.tangent = kernels::TangentKind::exact; },
+                        "rotation bound");
     expect_bad_settings([](auto& s) { s.rotation_interval = 5; }, "rotation interval");
     expect_bad_settings([](auto& s) { s.rotation.steps = 0; }, "rotation");
     expect_bad_settings([](auto& s) { s.newton_iterations = 0; }, "Newton");

@@ -38,6 +38,7 @@ std::vector<Variant> variants() {
              s.preconditioner = runtime::PreconditionerKind::block_jacobi;
              s.matrix = OperatorKind::block_rows;
          }},
+        {"rotation_bound", [](runtime::Settings& s) { s.rotation_bound = 0.02; }},
         {"linear", [](runtime::Settings& s) { s.model = runtime::ElementModel::linear; }},
         {"quaternion_method", [](runtime::Settings& s) { s.rotation.method = kernels::RotationMethod::quaternion; }},
         {"newton", [](runtime::Settings& s) { s.newton_iterations = 3; }},
