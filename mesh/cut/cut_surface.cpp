@@ -62,12 +62,12 @@ std::array<Point, 2> bounds_of(std::span<const Point> points) {
     return bounds;
 }
 
-/// The convex polygon with these corners, in order. Borders stand upright on it: inward = normal x edge.
-Facet polygon(std::span<const Point> corners, const Vector& normal) {
-    Facet facet{.plane = Plane(corners[0], normal), .bounds = bounds_of(corners)};
+/// The triangle with these corners, in order. Borders stand upright on it: inward = normal x edge.
+Facet triangle_facet(const std::array<Point, 3>& corners, const Vector& normal) {
+    Facet facet{.plane = Plane(corners[0], normal, corners), .bounds = bounds_of(corners)};
     for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Point &from = corners[k], &to = corners[(k + 1) % corners.size()];
-        facet.borders.push_back({Plane(from, cross(normal, between(from, to)))});
+        const std::array<Point, 2> edge{corners[k], corners[(k + 1) % corners.size()]};
+        facet.borders.push_back({Plane(edge[0], cross(normal, between(edge[0], edge[1])), edge)});
     }
     return facet;
 }
@@ -138,7 +138,7 @@ CutSurface CutSurface::triangulated(std::span<const Point> vertices, std::span<c
         }
         const Vector normal = cross(between(corners[0], corners[1]), between(corners[0], corners[2]));
         if (is_zero(normal)) continue;
-        facets.push_back(polygon(corners, normal));
+        facets.push_back(triangle_facet(corners, normal));
         corners_of.push_back(corners);
         for (std::size_t k = 0; k < 3; ++k) ++uses[key(corners[k], corners[(k + 1) % 3])];
     }

@@ -8,10 +8,15 @@
 
 namespace lancet::mesh {
 
-Plane::Plane(const Point& origin, const Normal& normal)
-    : origin_(origin),
-      normal_(normal),
-      rounded_normal_{normal[0].bounded(), normal[1].bounded(), normal[2].bounded()} {}
+Plane::Plane(const Point& origin, const Normal& normal, std::span<const Point> vertices)
+    : origin_(origin), normal_(normal), vertex_count_(vertices.size()) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        extended_normal_[axis] = normal[axis].extended();
+        rounded_normal_[axis] = extended_normal_[axis].bounded();
+        is_normal_ = is_normal_ && rounded_normal_[axis].is_precise(0x1p-50);
+    }
+    std::ranges::copy(vertices, vertices_.begin());
+}
 
 double Plane::function_value(const Point& place) const {
     const double value = function_(place);
@@ -29,6 +34,26 @@ Bounded Plane::value(const Point& place) const {
         from_origin[axis] = Bounded{place[axis], 0} - Bounded{origin_[axis], 0};
     }
     return dot(rounded_normal_, from_origin);
+}
+
+int Plane::quick_sign(const Point& place) const {
+    if (function_) return Bounded{function_value(place), 0}.sign();
+    if (!is_normal_) return 0;
+    double sum = 0, size = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double term = rounded_normal_[axis].value * (place[axis] - origin_[axis]);
+        sum += term;
+        size += std::abs(term);
+    }
+    // Each term is right to a few roundings, unless it is below the normal numbers.
+    return std::abs(sum) > 0x1p-48 * size + 0x1p-1000 ? (sum > 0 ? 1 : -1) : 0;
+}
+
+Extended Plane::extended(const Point& place) const {
+    if (function_) return {function_value(place), 0, 0};
+    std::array<Extended, 3> from_origin;
+    for (std::size_t axis = 0; axis < 3; ++axis) from_origin[axis] = Extended::difference(place[axis], origin_[axis]);
+    return dot(extended_normal_, from_origin);
 }
 
 Exact Plane::exact(const Point& place) const {
@@ -59,12 +84,10 @@ bool overlap(const Facet::Box& box, const std::array<Point, 4>& corners) {
 bool may_touch(const Facet& facet, const std::array<Point, 4>& corners) {
     if (!overlap(facet.bounds, corners)) return false;
     const auto are_all = [&](const Plane& plane, int sign) {
-        return std::ranges::all_of(corners, [&](const Point& corner) {
-            const Bounded value = plane.value(corner);
-            return value.is_certain() && value.sign() == sign;
-        });
+        return std::ranges::all_of(corners, [&](const Point& corner) { return plane.quick_sign(corner) == sign; });
     };
-    if (are_all(facet.plane, 1) || are_all(facet.plane, -1)) return false;
+    const int first = facet.plane.quick_sign(corners[0]);
+    if (first != 0 && are_all(facet.plane, first)) return false;
     return std::ranges::none_of(facet.borders, [&](const Facet::Border& border) { return are_all(border.plane, -1); });
 }
 

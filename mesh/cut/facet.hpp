@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "lancet/mesh/cut/numbers.hpp"
@@ -15,12 +16,18 @@ class Plane {
   public:
     using Normal = std::array<Exact, 3>;
 
-    Plane(const Point& origin, const Normal& normal);
+    /// `vertices`, at most three and all different, are places that lie in the plane exactly.
+    Plane(const Point& origin, const Normal& normal, std::span<const Point> vertices = {});
     explicit Plane(std::function<double(const Point&)> function) : function_(std::move(function)) {}
 
-    /// Both throw lancet::Error where a function's value is not finite.
+    /// These throw lancet::Error where a function's value is not finite.
     Bounded value(const Point& place) const;
+    Extended extended(const Point& place) const;
     Exact exact(const Point& place) const;
+    /// The sign of the value where it is quickly told; 0 where it is not.
+    int quick_sign(const Point& place) const;
+    /// Vertices of a surface that are known to lie in the plane.
+    std::span<const Point> vertices() const noexcept { return {vertices_.data(), vertex_count_}; }
     /// True where the values are those of a function that was given.
     bool is_function() const noexcept { return static_cast<bool>(function_); }
 
@@ -30,6 +37,10 @@ class Plane {
     Point origin_{};
     Normal normal_{};
     std::array<Bounded, 3> rounded_normal_{};
+    std::array<Extended, 3> extended_normal_{};
+    std::array<Point, 3> vertices_{};
+    std::size_t vertex_count_ = 0;
+    bool is_normal_ = true;  ///< no number of the normal vector is below what doubles hold with all digits
     std::function<double(const Point&)> function_{};
 };
 

@@ -20,7 +20,7 @@ struct Bounded {
     int sign() const noexcept { return value > 0 ? 1 : value < 0 ? -1 : 0; }
     bool is_certain() const noexcept { return std::abs(value) > error || error == 0; }
     /// True where the value is exact to a relative `tolerance`.
-    bool is_precise(double tolerance) const noexcept { return error <= tolerance * std::abs(value); }
+    bool is_precise(double tolerance) const noexcept { return error < tolerance * std::abs(value) || error == 0; }
 
     static Bounded rounded(double value, double error) noexcept {
         // The bound itself is rounded: a few units more than it can lose.
@@ -40,6 +40,61 @@ struct Bounded {
         // What underflows is smaller than the smallest normal number.
         return rounded(a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error +
                                               a.error * b.error + std::numeric_limits<double>::min());
+    }
+};
+
+/// Two doubles whose sum is the value, to about 2^-100, with a bound of its distance to the exact one: what
+/// neighbouring facets that lie nearly in one plane leave undecided in one double, this decides without going over to
+/// integers. The operations are those of Dekker (1971); their bounds are some times what they can lose.
+struct Extended {
+    double high = 0;
+    double low = 0;  ///< about a unit in the last place of `high`
+    double error = 0;
+
+    int sign() const noexcept { return high > 0 ? 1 : high < 0 ? -1 : 0; }
+    bool is_certain() const noexcept { return std::abs(high) > 2 * error || error == 0; }
+    bool is_precise(double tolerance) const noexcept { return error < tolerance * std::abs(high) || error == 0; }
+    Bounded bounded() const noexcept { return {high, low == 0 ? error : (std::abs(low) + error) * (1 + 0x1p-50)}; }
+
+    /// A difference of two doubles is exact in two, unless it overflows; then it is not certain.
+    static Extended difference(double a, double b) noexcept {
+        const double high = a - b, back = high - a;
+        return {high, (a - (high - back)) - (b + back), std::isfinite(high) ? 0 : high};
+    }
+    friend Extended operator-(const Extended& a) noexcept { return {-a.high, -a.low, a.error}; }
+    friend Extended operator-(const Extended& a, const Extended& b) noexcept { return a + -b; }
+    friend Extended operator+(const Extended& a, const Extended& b) noexcept {
+        if (a.high == 0 && a.error == 0) return b;
+        if (b.high == 0 && b.error == 0) return a;
+        const double sum = a.high + b.high, back = sum - a.high;
+        const double rest = ((a.high - (sum - back)) + (b.high - back)) + (a.low + b.low);
+        return normalised(sum, rest, a.error + b.error + lost * (std::abs(a.high) + std::abs(b.high)));
+    }
+    friend Extended operator*(const Extended& a, const Extended& b) noexcept {
+        const bool is_zero = (a.high == 0 && a.error == 0) || (b.high == 0 && b.error == 0);
+        if (is_zero) return {};
+        const double product = a.high * b.high;
+        const auto [a_top, a_rest] = halves(a.high);
+        const auto [b_top, b_rest] = halves(b.high);
+        const double rest = (((a_top * b_top - product) + a_top * b_rest + a_rest * b_top) + a_rest * b_rest) +
+                            (a.high * b.low + a.low * b.high);
+        const double a_error = a.error * std::abs(b.high), b_error = b.error * std::abs(a.high);
+        // What underflows is smaller than the smallest normal number.
+        return normalised(product, rest,
+                          (a_error + b_error) * (1 + 0x1p-50) + a.error * b.error + lost * std::abs(product) +
+                              std::numeric_limits<double>::min());
+    }
+
+  private:
+    static constexpr double lost = 0x1p-101;  ///< of each operation, in proportion to its terms
+    static std::array<double, 2> halves(double a) noexcept {
+        const double scaled = 134217729 * a;  // 2^27 + 1
+        const double top = scaled - (scaled - a);
+        return {top, a - top};
+    }
+    static Extended normalised(double high, double low, double error) noexcept {
+        const double sum = high + low;
+        return {sum, low - (sum - high), error * (1 + 0x1p-50)};
     }
 };
 
@@ -69,6 +124,13 @@ class Exact {
         if (value < Limits::min()) return {sign() * std::max(value, Limits::denorm_min()), Limits::min()};
         const bool is_exact = drop == 0 && bits <= 53;
         return {sign() * value, is_exact ? 0.0 : value * Limits::epsilon()};
+    }
+    /// The value as two doubles.
+    Extended extended() const {
+        const Bounded leading = bounded();
+        if (leading.error == 0) return {leading.value, 0, 0};
+        const Bounded rest = (*this - Exact(leading.value)).bounded();
+        return {leading.value, rest.value, rest.error};
     }
     /// The e with 2^e <= |value| < 2^(e + 1); 0 for zero.
     int exponent() const {
@@ -104,7 +166,8 @@ class Exact {
     }
 
   private:
-    using Integer = boost::multiprecision::cpp_int;
+    // Kept in place up to the length that sides of points come to.
+    using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<1024>>;
     Integer mantissa_ = 0;
     int exponent_ = 0;
 };
@@ -128,11 +191,11 @@ std::array<Number, 3> cross(const std::array<Number, 3>& a, const std::array<Num
 template <class Number>
 std::array<Number, 4> cross(const std::array<Number, 4>& a, const std::array<Number, 4>& b,
                             const std::array<Number, 4>& c) {
-    const auto minor = [&](std::size_t i, std::size_t j, std::size_t k) {
-        return a[i] * (b[j] * c[k] - b[k] * c[j]) - a[j] * (b[i] * c[k] - b[k] * c[i]) +
-               a[k] * (b[i] * c[j] - b[j] * c[i]);
-    };
-    return {minor(1, 2, 3), -minor(0, 2, 3), minor(0, 1, 3), -minor(0, 1, 2)};
+    const auto minor = [&](std::size_t i, std::size_t j) { return b[i] * c[j] - b[j] * c[i]; };
+    const Number m01 = minor(0, 1), m02 = minor(0, 2), m03 = minor(0, 3), m12 = minor(1, 2), m13 = minor(1, 3),
+                 m23 = minor(2, 3);
+    return {a[1] * m23 - a[2] * m13 + a[3] * m12, -(a[0] * m23 - a[2] * m03 + a[3] * m02),
+            a[0] * m13 - a[1] * m03 + a[3] * m01, -(a[0] * m12 - a[1] * m02 + a[2] * m01)};
 }
 
 }  // namespace lancet::mesh

@@ -1,8 +1,10 @@
 #include "lancet/mesh/cut/plane_pool.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lancet::mesh {
 
@@ -11,6 +13,8 @@ namespace {
 /// The relative precision of the coordinates of points. Sums of a few products lose some units; this is far above them,
 /// and far below what volumes and sides notice.
 constexpr double precise = 0x1p-44;
+/// That of volumes.
+constexpr double sufficient = 0x1p-30;
 
 }  // namespace
 
@@ -22,13 +26,42 @@ PlanePool::PlanePool() {
     }
 }
 
-int PlanePool::add_plane(const Plane& source, const std::array<Point, 4>& corners) {
-    StoredPlane stored{.source = &source, .corners = corners, .is_kept = {true, true, true, true}};
-    for (std::size_t k = 0; k < 4; ++k) {
-        stored.values[k] = source.value(corners[k]);
-        // What follows reads these values often: an uncertain one is better settled here.
-        if (!stored.values[k].is_certain()) stored.values[k] = source.exact(corners[k]).bounded();
+int PlanePool::number_of_frame(const std::array<Point, 4>& corners) {
+    for (std::size_t frame = frames_.size(); frame > 0; --frame) {
+        if (frames_[frame - 1] == corners) return static_cast<int>(frame) - 1;
     }
+    frames_.push_back(corners);
+    return static_cast<int>(frames_.size()) - 1;
+}
+
+void PlanePool::take_vertices(StoredPlane& plane) {
+    const std::span<const Point> places = plane.source->vertices();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        // The latest first: facets come with their neighbours.
+        std::size_t number = vertices_.size();
+        while (number > 0 &&
+               !(vertices_[number - 1].place == places[k] && vertices_[number - 1].frame == plane.frame)) {
+            --number;
+        }
+        if (number == 0) {
+            vertices_.push_back({places[k], plane.frame});
+            number = vertices_.size();
+        }
+        plane.vertices[k] = static_cast<int>(number) - 1;
+    }
+}
+
+int PlanePool::add_plane(const Plane& source, const std::array<Point, 4>& corners) {
+    StoredPlane stored{.source = &source, .frame = number_of_frame(corners), .is_kept = {true, true, true, true}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        Bounded& value = stored.values[k];
+        value = source.value(corners[k]);
+        // What follows reads these values often: an uncertain one is better settled here.
+        if (!value.is_precise(precise)) value = source.extended(corners[k]).bounded();
+        if (!value.is_precise(precise)) value = source.exact(corners[k]).bounded();
+        stored.is_precise = stored.is_precise && value.is_precise(precise);
+    }
+    take_vertices(stored);
     planes_.push_back(stored);
     return planes() - 1;
 }
@@ -47,20 +80,39 @@ std::array<double, 4> PlanePool::values(int number) const {
 
 int PlanePool::add_trace(const PlanePool& other, int plane, const std::array<int, 3>& face) {
     const StoredPlane& original = other.plane(plane);
-    StoredPlane trace{.source = original.source};
+    StoredPlane trace{.source = original.source, .is_precise = original.is_precise};
+    std::array<Point, 4> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
         const auto corner = static_cast<std::size_t>(face[k]);
-        trace.corners[k] = original.corners[corner];
+        if (original.frame >= 0) corners[k] = other.frames_[static_cast<std::size_t>(original.frame)][corner];
         trace.is_kept[k] = original.is_kept[corner];
         trace.values[k] = original.values[corner];
     }
+    trace.frame = number_of_frame(corners);
     const auto same = std::ranges::find_if(planes_, [&](const StoredPlane& known) {
-        return trace.source != nullptr && known.source == trace.source && known.corners == trace.corners &&
+        return trace.source != nullptr && known.source == trace.source && known.frame == trace.frame &&
                known.is_kept == trace.is_kept;
     });
     if (same != planes_.end()) return static_cast<int>(same - planes_.begin());
+    if (trace.source != nullptr) take_vertices(trace);
     planes_.push_back(trace);
     return planes() - 1;
+}
+
+const std::array<Extended, 4>& PlanePool::extended_values(int number) const {
+    const StoredPlane& stored = plane(number);
+    if (stored.extended) return *stored.extended;
+    std::array<Extended, 4> values;
+    for (std::size_t k = 0; k < 4; ++k) {
+        // A value without an error is exact as it stands: that of a face, or a zero.
+        if (stored.source == nullptr || stored.values[k].error == 0) {
+            values[k] = {stored.values[k].value, 0, 0};
+        } else if (stored.is_kept[k]) {
+            values[k] = stored.source->extended(frames_[static_cast<std::size_t>(stored.frame)][k]);
+        }
+    }
+    stored.extended = std::make_shared<const std::array<Extended, 4>>(values);
+    return *stored.extended;
 }
 
 const std::array<Exact, 4>& PlanePool::exact_values(int number) const {
@@ -68,15 +120,29 @@ const std::array<Exact, 4>& PlanePool::exact_values(int number) const {
     if (stored.exact) return *stored.exact;
     std::array<Exact, 4> values;
     for (std::size_t k = 0; k < 4; ++k) {
-        // A value without an error is exact as it stands: that of a face, or a zero.
         if (stored.source == nullptr || stored.values[k].error == 0) {
             values[k] = Exact(stored.values[k].value);
         } else if (stored.is_kept[k]) {
-            values[k] = stored.source->exact(stored.corners[k]);
+            values[k] = stored.source->exact(frames_[static_cast<std::size_t>(stored.frame)][k]);
         }
     }
     stored.exact = std::make_shared<const std::array<Exact, 4>>(std::move(values));
     return *stored.exact;
+}
+
+const std::array<Extended, 4>& PlanePool::extended_weights(const StoredPoint& point) const {
+    if (point.extended) return *point.extended;
+    std::array<Extended, 4> weights =
+        cross(extended_values(point.planes[0]), extended_values(point.planes[1]), extended_values(point.planes[2]));
+    const Extended sum = (weights[0] + weights[1]) + (weights[2] + weights[3]);
+    // A sum without a certain sign leaves that of the weights open.
+    if (!sum.is_certain()) {
+        for (Extended& weight : weights) weight.error = std::numeric_limits<double>::infinity();
+    } else if (sum.sign() < 0) {
+        for (Extended& weight : weights) weight = -weight;
+    }
+    point.extended = std::make_shared<const std::array<Extended, 4>>(weights);
+    return *point.extended;
 }
 
 const std::array<Exact, 4>& PlanePool::exact_weights(const StoredPoint& point) const {
@@ -91,23 +157,34 @@ const std::array<Exact, 4>& PlanePool::exact_weights(const StoredPoint& point) c
 }
 
 int PlanePool::find_or_add_point(const std::array<int, 3>& planes) {
-    const auto same = std::ranges::find_if(
-        points_, [&](const StoredPoint& point) { return std::ranges::is_permutation(point.planes, planes); });
-    return same != points_.end() ? static_cast<int>(same - points_.begin()) : add_point(planes);
+    const auto sorted = [](std::array<int, 3> numbers) {
+        if (numbers[0] > numbers[1]) std::swap(numbers[0], numbers[1]);
+        if (numbers[1] > numbers[2]) std::swap(numbers[1], numbers[2]);
+        if (numbers[0] > numbers[1]) std::swap(numbers[0], numbers[1]);
+        return numbers;
+    };
+    const std::array<int, 3> wanted = sorted(planes);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+        const std::array<int, 3>& known = points_[k].planes;
+        if (known[0] + known[1] + known[2] != wanted[0] + wanted[1] + wanted[2]) continue;
+        if (sorted(known) == wanted) return static_cast<int>(k);
+    }
+    return add_point(planes);
 }
 
 int PlanePool::add_point(const std::array<int, 3>& planes) {
     StoredPoint point{.planes = planes};
     point.weights = cross(plane(planes[0]).values, plane(planes[1]).values, plane(planes[2]).values);
     // The point lies in the tetrahedron: no two weights differ in sign.
-    int sign = 0;
-    bool is_precise = true;
-    for (const Bounded& weight : point.weights) {
-        is_precise = is_precise && weight.is_precise(precise);
-        if (weight.is_certain() && weight.sign() != 0) sign = weight.sign();
-    }
-    if (is_precise) {
-        for (Bounded& weight : point.weights) weight = sign < 0 ? -weight : weight;
+    const auto are_precise = [](const auto& weights) {
+        return std::ranges::all_of(weights, [](const auto& weight) { return weight.is_precise(precise); });
+    };
+    if (are_precise(point.weights)) {
+        const bool is_negative =
+            std::ranges::any_of(point.weights, [](const Bounded& weight) { return weight.sign() < 0; });
+        for (Bounded& weight : point.weights) weight = is_negative ? -weight : weight;
+    } else if (const std::array<Extended, 4>& extended = extended_weights(point); are_precise(extended)) {
+        for (std::size_t k = 0; k < 4; ++k) point.weights[k] = extended[k].bounded();
     } else {
         const std::array<Exact, 4>& exact = exact_weights(point);
         // Products of tiny values may all lie below the range of double; only their ratios matter.
@@ -116,12 +193,13 @@ int PlanePool::add_point(const std::array<int, 3>& planes) {
             if (weight.sign() != 0) largest = std::max(largest, weight.exponent());
         }
         for (std::size_t k = 0; k < 4; ++k) point.weights[k] = exact[k].scaled(-largest).bounded();
+        point.is_precise = are_precise(point.weights);
     }
     double sum = 0;
     for (const Bounded& weight : point.weights) sum += weight.value;
     for (std::size_t k = 0; k < 4; ++k) point.coordinates[k] = point.weights[k].value / sum;
-    points_.push_back(point);
-    return static_cast<int>(points_.size()) - 1;
+    points_.push_back(std::move(point));
+    return points() - 1;
 }
 
 double PlanePool::volume_fraction(const std::array<int, 4>& points) const {
@@ -152,12 +230,26 @@ double PlanePool::volume_fraction(const std::array<int, 4>& points) const {
     }
     const Bounded volume = dot(d[0], cross(d[1], d[2]));
     // Between planes that nearly coincide differences cancel.
-    return volume.is_precise(0x1p-30) ? std::abs(volume.value) : exact_volume_fraction(points);
+    return volume.is_precise(sufficient) ? std::abs(volume.value) : extended_volume_fraction(points);
+}
+
+double PlanePool::extended_volume_fraction(const std::array<int, 4>& points) const {
+    // Weights w_k are coordinates times their sums s_k: |det c| = |det w| / (s_0 s_1 s_2 s_3).
+    const auto weights = [&](std::size_t k) -> const std::array<Extended, 4>& {
+        return extended_weights(points_[static_cast<std::size_t>(points[k])]);
+    };
+    const Extended determinant = dot(weights(0), cross(weights(1), weights(2), weights(3)));
+    Extended divisor{1, 0, 0};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::array<Extended, 4>& w = weights(k);
+        divisor = divisor * ((w[0] + w[1]) + (w[2] + w[3]));
+    }
+    const bool is_known = determinant.is_precise(sufficient / 4) && divisor.is_precise(sufficient / 4);
+    return is_known ? std::abs(determinant.high) / divisor.high : exact_volume_fraction(points);
 }
 
 double PlanePool::exact_volume_fraction(const std::array<int, 4>& points) const {
-    // Weights w_k are coordinates times their sums s_k: |det c| = |det w| / (s_0 s_1 s_2 s_3). Powers of two move
-    // between both, so that neither leaves the range of double.
+    // The same; powers of two move between both, so that neither leaves the range of double.
     const auto weights = [&](std::size_t k) -> const std::array<Exact, 4>& {
         return exact_weights(points_[static_cast<std::size_t>(points[k])]);
     };
@@ -173,12 +265,34 @@ double PlanePool::exact_volume_fraction(const std::array<int, 4>& points) const 
 }
 
 int PlanePool::side(int plane_number, int point_number) const {
-    const auto row = static_cast<std::size_t>(plane_number), column = static_cast<std::size_t>(point_number);
-    if (sides_.size() <= row) sides_.resize(planes_.size());
-    std::vector<std::int8_t>& known = sides_[row];
-    if (known.size() <= column) known.resize(points_.size(), unknown);
-    if (known[column] == unknown) known[column] = static_cast<std::int8_t>(find_side(plane_number, point_number));
-    return known[column];
+    const StoredPlane& at = plane(plane_number);
+    const StoredPoint& point = points_[static_cast<std::size_t>(point_number)];
+    double sum = 0, size = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double term = at.values[k].value * point.weights[k].value;
+        sum += term;
+        size += std::abs(term);
+    }
+    // Each term is right to twice the precision of its factors, unless it is below the normal numbers.
+    const bool is_certain = at.is_precise && point.is_precise && std::abs(sum) > 4 * precise * size + 0x1p-1000;
+    return is_certain ? (sum > 0 ? 1 : -1) : find_side(plane_number, point_number);
+}
+
+/// True where the planes that meet in the point have so many vertices in common with another that it goes through the
+/// point too: two of them an edge, which is then the line in which they meet, or all three a vertex.
+bool PlanePool::meet_in_vertices(const StoredPlane& other, const StoredPoint& point) const {
+    std::array<unsigned, 3> shared{};  // bits: which of the other plane's vertices
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::array<int, 3>& vertices = plane(point.planes[i]).vertices;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int vertex = other.vertices[k];
+            const bool is_shared =
+                vertex >= 0 && (vertex == vertices[0] || vertex == vertices[1] || vertex == vertices[2]);
+            shared[i] |= is_shared ? 1U << k : 0U;
+        }
+    }
+    return (shared[0] & shared[1] & shared[2]) != 0 || std::popcount(shared[0] & shared[1]) >= 2 ||
+           std::popcount(shared[1] & shared[2]) >= 2 || std::popcount(shared[2] & shared[0]) >= 2;
 }
 
 int PlanePool::find_side(int plane_number, int point_number) const {
@@ -186,8 +300,11 @@ int PlanePool::find_side(int plane_number, int point_number) const {
     for (const int through : point.planes) {
         if (through == plane_number) return 0;
     }
+    if (meet_in_vertices(plane(plane_number), point)) return 0;
     const Bounded bounded = dot(plane(plane_number).values, point.weights);
     if (bounded.is_certain()) return bounded.sign();
+    const Extended extended = dot(extended_values(plane_number), extended_weights(point));
+    if (extended.is_certain()) return extended.sign();
     return dot(exact_values(plane_number), exact_weights(point)).sign();
 }
 
