@@ -1,54 +1,87 @@
 #include "lancet/mesh/cut/cell.hpp"
 
 #include <algorithm>
-#include <map>
+#include <array>
 
 namespace lancet::mesh {
 
 namespace {
 
-struct Sides {
-    bool has_below = false, has_above = false;
+/// An edge of a cell in a cutting plane, as it runs in another face of a piece.
+struct LidEdge {
+    int from = 0, to = 0;
+    HalfSpace face;
 };
+using LidEdges = InlineVector<LidEdge, 12>;
 
-Sides sides_of(const PlanePool& pool, const Cell& cell, int plane) {
-    Sides sides;
-    for (const Cell::Face& face : cell.faces) {
-        for (const int point : face.points) {
-            const int side = pool.side(plane, point);
-            sides.has_below = sides.has_below || side < 0;
-            sides.has_above = sides.has_above || side > 0;
+/// Takes up a face of a piece, with its edges along the lid.
+void keep(Cell& piece, Cell::Face&& face, const HalfSpace& lid, LidEdges& border) {
+    const std::size_t count = face.points.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        if (face.edges[k].plane == lid.plane) {
+            border.push_back({face.points[k], face.points[(k + 1) % count], face.half});
         }
     }
-    return sides;
+    piece.faces.push_back(std::move(face));
 }
 
-/// The other face at the edge that runs from `from` to `to` in a face.
-const Cell::Face& neighbour(const Cell& cell, int from, int to) {
-    for (const Cell::Face& face : cell.faces) {
-        const std::size_t count = face.points.size();
-        for (std::size_t k = 0; k < count; ++k) {
-            if (face.points[k] == to && face.points[(k + 1) % count] == from) return face;
-        }
-    }
-    return cell.faces.front();  // never reached: every edge of a cell has two faces
-}
-
-/// Closes a piece with the polygon in the cutting plane, given by its edges as they run in the other faces.
-void close(Cell& piece, const HalfSpace& half, const std::map<int, int>& next_in_faces) {
-    std::map<int, int> next;
-    for (const auto& [from, to] : next_in_faces) next[to] = from;
-    Cell::Face lid{.half = half};
-    const int first = next.begin()->first;
+/// Closes a piece with the polygon in the cutting plane, whose edges run the other way round.
+void close(Cell& piece, const HalfSpace& lid, const LidEdges& border) {
+    Cell::Face face{.half = lid};
+    const int first = std::ranges::min(border, {}, &LidEdge::to).to;
     int point = first;
     do {
-        lid.points.push_back(point);
-        point = next.at(point);
+        const LidEdge& edge = *std::ranges::find(border, point, &LidEdge::to);
+        face.points.push_back(point);
+        face.edges.push_back(edge.face);
+        point = edge.from;
     } while (point != first);
-    piece.faces.push_back(std::move(lid));
+    piece.faces.push_back(std::move(face));
+}
+
+/// The point of an edge that the plane crosses, which lies in two faces.
+int crossing(PlanePool& pool, int from, int to, const std::array<int, 3>& planes, Crossings& crossings) {
+    const auto [low, high] = std::minmax(from, to);
+    for (const Crossing& known : crossings) {
+        if (known.low == low && known.high == high) return known.point;
+    }
+    const int point = pool.add_point(planes);
+    crossings.push_back({low, high, point});
+    return point;
 }
 
 }  // namespace
+
+int PointSides::of(int point) {
+    const auto at = static_cast<std::size_t>(point);
+    if (known_.size() <= at) known_.resize(static_cast<std::size_t>(pool_->points()), unknown);
+    if (known_[at] == unknown) known_[at] = static_cast<std::int8_t>(pool_->side(plane_, point));
+    return known_[at];
+}
+
+std::array<int, 2> PointSides::range(std::span<const int> points) {
+    std::array<int, 2> range{1, -1};
+    for (const int point : points) {
+        const int side = of(point);
+        range[0] = std::min(range[0], side);
+        range[1] = std::max(range[1], side);
+    }
+    return range;
+}
+
+std::array<int, 2> PointSides::range(const Cell& cell) {
+    std::array<int, 2> range{1, -1};
+    for (const Cell::Face& face : cell.faces) {
+        const std::array<int, 2> of_face = this->range(face.points);
+        range = {std::min(range[0], of_face[0]), std::max(range[1], of_face[1])};
+        if (range[0] < 0 && range[1] > 0) break;
+    }
+    return range;
+}
+
+void PointSides::keep_points(int count) {
+    known_.resize(std::min(known_.size(), static_cast<std::size_t>(count)));
+}
 
 Cell whole_tetrahedron(PlanePool& pool) {
     std::array<int, 4> corner{};
@@ -56,78 +89,90 @@ Cell whole_tetrahedron(PlanePool& pool) {
     Cell cell;
     for (int k = 0; k < 4; ++k) {
         Cell::Face face{.half = {k, 1}};
-        for (const int point : opposite_faces[static_cast<std::size_t>(k)]) face.points.push_back(corner[point]);
+        const auto& corners = opposite_faces[static_cast<std::size_t>(k)];
+        for (std::size_t i = 0; i < 3; ++i) {
+            face.points.push_back(corner[corners[i]]);
+            // The other face at the edge to the next corner is opposite the third.
+            face.edges.push_back({static_cast<int>(corners[(i + 2) % 3]), 1});
+        }
         cell.faces.push_back(std::move(face));
     }
     return cell;
 }
 
-bool is_crossed(const PlanePool& pool, const Cell& cell, int plane) {
-    const Sides sides = sides_of(pool, cell, plane);
-    return sides.has_below && sides.has_above;
-}
-
 bool reaches_above(const PlanePool& pool, const Cell& cell, int plane) {
-    return sides_of(pool, cell, plane).has_above;
+    return PointSides(pool, plane).range(cell)[1] > 0;
 }
 
-bool has_face_in(const PlanePool& pool, const Cell& cell, int plane) {
+bool has_face_in(const Cell& cell, PointSides& sides) {
     return std::ranges::any_of(cell.faces, [&](const Cell::Face& face) {
-        return std::ranges::all_of(face.points, [&](int point) { return pool.side(plane, point) == 0; });
+        return std::ranges::all_of(face.points, [&](int point) { return sides.of(point) == 0; });
     });
 }
 
-std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, int plane) {
-    const Sides sides = sides_of(pool, cell, plane);
-    if (!sides.has_below || !sides.has_above) return std::nullopt;
-
-    std::pair<Cell, Cell> pieces;
-    std::map<int, int> border_below, border_above;  // edges in the plane, as they run in the faces
-    std::map<std::pair<int, int>, int> crossings;
+PointNumbers section_points(PlanePool& pool, const Cell& cell, PointSides& sides, Crossings& crossings) {
+    PointNumbers points;
     for (const Cell::Face& face : cell.faces) {
-        Cell::Face below{.half = face.half}, above{.half = face.half};
-        std::map<int, bool> is_in_plane;
         const std::size_t count = face.points.size();
-        int lowest = 0, highest = 0;
         for (std::size_t k = 0; k < count; ++k) {
             const int from = face.points[k], to = face.points[(k + 1) % count];
-            const int here = pool.side(plane, from), there = pool.side(plane, to);
-            lowest = std::min(lowest, here);
-            highest = std::max(highest, here);
-            if (here <= 0) below.points.push_back(from);
-            if (here >= 0) above.points.push_back(from);
-            is_in_plane[from] = here == 0;
-            if (here * there >= 0) continue;
-            const auto [place, is_new] = crossings.try_emplace(std::minmax(from, to), 0);
-            if (is_new) {
-                place->second = pool.add_point({face.half.plane, neighbour(cell, from, to).half.plane, plane});
-            }
-            below.points.push_back(place->second);
-            above.points.push_back(place->second);
-            is_in_plane[place->second] = true;
+            const int here = sides.of(from);
+            if (here == 0 && std::ranges::find(points, from) == points.end()) points.push_back(from);
+            // Each edge runs in this direction in one face.
+            if (here >= 0 || sides.of(to) <= 0) continue;
+            const std::array<int, 3> planes{face.half.plane, face.edges[k].plane, sides.plane()};
+            points.push_back(crossing(pool, from, to, planes, crossings));
         }
-        const auto keep = [&](Cell::Face& kept, Cell& piece, std::map<int, int>& border) {
-            for (std::size_t k = 0; k < kept.points.size(); ++k) {
-                const int from = kept.points[k], to = kept.points[(k + 1) % kept.points.size()];
-                if (is_in_plane[from] && is_in_plane[to]) border[from] = to;
-            }
-            piece.faces.push_back(std::move(kept));
-        };
-        if (lowest < 0) keep(below, pieces.first, border_below);
-        if (highest > 0) keep(above, pieces.second, border_above);
     }
-    close(pieces.first, {plane, -1}, border_below);
-    close(pieces.second, {plane, 1}, border_above);
+    return points;
+}
+
+std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, int plane) {
+    PointSides sides(pool, plane);
+    Crossings crossings;
+    return split(pool, cell, sides, crossings);
+}
+
+std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, PointSides& sides, Crossings& crossings) {
+    const auto [cell_lowest, cell_highest] = sides.range(cell);
+    if (cell_lowest >= 0 || cell_highest <= 0) return std::nullopt;
+
+    const HalfSpace lid_below{sides.plane(), -1}, lid_above{sides.plane(), 1};
+    std::pair<Cell, Cell> pieces;
+    pieces.first.faces.reserve(cell.faces.size() + 1);
+    pieces.second.faces.reserve(cell.faces.size() + 1);
+    LidEdges border_below, border_above;
+    for (const Cell::Face& face : cell.faces) {
+        Cell::Face below{.half = face.half}, above{.half = face.half};
+        const auto add = [](Cell::Face& piece, int point, const HalfSpace& edge) {
+            piece.points.push_back(point);
+            piece.edges.push_back(edge);
+        };
+        const auto [lowest, highest] = sides.range(face.points);
+        const std::size_t count = face.points.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            const int from = face.points[k], to = face.points[(k + 1) % count];
+            const int here = sides.of(from), there = sides.of(to);
+            const HalfSpace& edge = face.edges[k];
+            // From a point in the plane to the other side runs the lid, and also along the plane.
+            if (lowest < 0 && here <= 0) add(below, from, here == 0 && there >= 0 ? lid_below : edge);
+            if (highest > 0 && here >= 0) add(above, from, here == 0 && there <= 0 ? lid_above : edge);
+            if (here * there >= 0) continue;
+            const int point = crossing(pool, from, to, {face.half.plane, edge.plane, sides.plane()}, crossings);
+            add(below, point, here < 0 ? lid_below : edge);
+            add(above, point, here > 0 ? lid_above : edge);
+        }
+        if (lowest < 0) keep(pieces.first, std::move(below), lid_below, border_below);
+        if (highest > 0) keep(pieces.second, std::move(above), lid_above, border_above);
+    }
+    close(pieces.first, lid_below, border_below);
+    close(pieces.second, lid_above, border_above);
     return pieces;
 }
 
 Polygon polygon(const Cell& cell, std::size_t number) {
     const Cell::Face& face = cell.faces[number];
-    Polygon polygon{.plane = face.half.plane, .points = face.points};
-    for (std::size_t k = 0; k < face.points.size(); ++k) {
-        polygon.edges.push_back(neighbour(cell, face.points[k], face.points[(k + 1) % face.points.size()]).half);
-    }
-    return polygon;
+    return {face.half.plane, face.points, face.edges};
 }
 
 void add_cell(PartMoments& moments, const PlanePool& pool, const Cell& cell) {

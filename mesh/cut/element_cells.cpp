@@ -1,94 +1,239 @@
 #include "lancet/mesh/cut/element_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace lancet::mesh {
 
 namespace {
 
-std::shared_ptr<SharedCell> shared(Cell&& cell) {
-    return std::make_shared<SharedCell>(std::move(cell));
+/// The box of a cell whose tetrahedron has these corners, enlarged by more than it can be rounded.
+Facet::Box box_of(const PlanePool& pool, const Cell& cell, const std::array<Point, 4>& corners) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Facet::Box box{Point{infinity, infinity, infinity}, Point{-infinity, -infinity, -infinity}};
+    for (const Cell::Face& face : cell.faces) {
+        for (const int point : face.points) {
+            const Barycentric& weights = pool.coordinates(point);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                double place = 0;
+                for (std::size_t k = 0; k < 4; ++k) place += weights[k] * corners[k][axis];
+                box[0][axis] = std::min(box[0][axis], place);
+                box[1][axis] = std::max(box[1][axis], place);
+            }
+        }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double largest = 0;
+        for (const Point& corner : corners) largest = std::max(largest, std::abs(corner[axis]));
+        box[0][axis] -= 0x1p-40 * largest;
+        box[1][axis] += 0x1p-40 * largest;
+    }
+    return box;
+}
+
+bool are_apart(const Facet::Box& a, const Facet::Box& b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (a[0][axis] > b[1][axis] || b[0][axis] > a[1][axis]) return true;
+    }
+    return false;
+}
+
+const Cell::Face* face_in(const Cell& cell, const HalfSpace& half) {
+    const auto found = std::ranges::find_if(cell.faces, [&](const Cell::Face& face) {
+        return face.half.plane == half.plane && face.half.side == half.side;
+    });
+    return found == cell.faces.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-ElementCells::ElementCells() : plane_is_cut_(4, false), cells_{shared(whole_tetrahedron(pool_))}, part_of_cell_{0} {}
+ElementCells::ElementCells() : plane_is_cut_(4, false), part_of_cell_{0} {
+    cells_.push_back(shared(whole_tetrahedron(pool_)));
+}
+
+std::shared_ptr<SharedCell> ElementCells::shared(Cell&& cell) const {
+    const auto shared = std::make_shared<SharedCell>(std::move(cell));
+    for (const Cell::Face& face : shared->shape.faces) {
+        for (const int point : face.points) {
+            for (std::size_t corner = 0; corner < 4; ++corner) {
+                if (pool_.coordinates(point)[corner] == 1) shared->corners |= 1U << corner;
+            }
+        }
+    }
+    return shared;
+}
 
 int ElementCells::add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut) {
     plane_is_cut_.push_back(is_cut);
     return pool_.add_plane(plane, corners);
 }
 
+/// The division of one part by the facets of a surface.
+class ElementCells::Division {
+  public:
+    Division(ElementCells& cells, int part, const std::array<Point, 4>& corners, bool extends)
+        : cells_(cells), pool_(cells.pool_), corners_(corners), part_(part), extends_(extends) {}
+
+    bool divide(const Facet& facet) {
+        planes_.clear();
+        bool is_touched = false, is_cover = false;
+        const std::size_t count = cells_.cells();
+        for (std::size_t c = 0; c < count; ++c) {
+            if (cells_.part_of_cell(c) != part_ || are_apart(box(c), facet.bounds)) continue;
+            const auto [lowest, highest] = plane(facet).range(cells_.cell(c));
+            if (lowest < 0 && highest > 0) {
+                is_touched = divide(facet, c) || is_touched;
+            } else {
+                is_cover = is_cover || has_face_in(cells_.cell(c), plane(facet));
+            }
+        }
+        if (is_cover) {
+            Cover cover{.plane = plane(facet).plane()};
+            for (std::size_t k = 0; k < facet.borders.size(); ++k) cover.borders.push_back(border(facet, k).plane());
+            cells_.covers_.push_back(std::move(cover));
+            for (Joint& joint : cells_.joints_) joint.is_known = false;
+        }
+        return is_touched || is_cover;
+    }
+
+  private:
+    /// The planes of the facet, which are added to the pool where they are needed.
+    PointSides& plane(const Facet& facet) {
+        if (planes_.empty()) planes_.emplace_back(pool_, cells_.add_plane(facet.plane, corners_, true));
+        return planes_.front();
+    }
+    PointSides& border(const Facet& facet, std::size_t k) {
+        plane(facet);
+        while (planes_.size() <= k + 1) {
+            const Plane& next = facet.borders[planes_.size() - 1].plane;
+            planes_.emplace_back(pool_, cells_.add_plane(next, corners_, false));
+        }
+        return planes_[k + 1];
+    }
+
+    const Facet::Box& box(std::size_t cell) {
+        while (boxes_.size() <= cell) boxes_.push_back(box_of(pool_, cells_.cell(boxes_.size()), corners_));
+        return boxes_[cell];
+    }
+
+    /// Divides a cell that the plane of the facet crosses; false where the facet itself does not.
+    bool divide(const Facet& facet, std::size_t c) {
+        for (std::size_t k = 0; k < facet.borders.size(); ++k) {
+            if (border(facet, k).range(cells_.cell(c))[1] <= 0) return false;
+        }
+        const int points = pool_.points();
+        Crossings crossings;
+        std::optional<Inside> inside = clipped(facet, c, crossings, false);
+        if (inside && extends_) inside = clipped(facet, c, crossings, true);
+        if (!inside) {
+            pool_.keep_points(points);
+            for (PointSides& sides : planes_) sides.keep_points(points);
+            return false;
+        }
+        auto halves = split(pool_, inside->cell ? *inside->cell : cells_.cell(c), plane(facet), crossings);
+        cells_.replace(c, std::move(halves->first), std::move(halves->second), std::move(inside->outside));
+        boxes_[c] = box_of(pool_, cells_.cell(c), corners_);
+        return true;
+    }
+
+    /// What is left of a cell when only as much is cut off by borders as keeps the plane's section with it inside of
+    /// all of them, and what was cut off.
+    struct Inside {
+        std::optional<Cell> cell{};  ///< nothing: all of it
+        std::vector<Cell> outside{};
+    };
+    /// Nothing where no area of the section is inside.
+    std::optional<Inside> clipped(const Facet& facet, std::size_t c, Crossings& crossings, bool only_inner) {
+        Inside inside;
+        PointNumbers section = section_points(pool_, cells_.cell(c), plane(facet), crossings);
+        std::vector<std::size_t> crossed;
+        for (std::size_t k = 0; k < facet.borders.size(); ++k) {
+            if (only_inner && facet.borders[k].is_outer) continue;
+            const auto [lowest, highest] = border(facet, k).range(section);
+            if (highest <= 0) return std::nullopt;
+            if (lowest < 0) crossed.push_back(k);
+        }
+        for (const std::size_t k : crossed) {
+            const auto [lowest, highest] = border(facet, k).range(section);
+            if (highest <= 0) return std::nullopt;
+            if (lowest >= 0) continue;
+            Crossings of_border;
+            auto pieces = split(pool_, inside.cell ? *inside.cell : cells_.cell(c), border(facet, k), of_border);
+            inside.outside.push_back(std::move(pieces->first));
+            inside.cell = std::move(pieces->second);
+            section = section_points(pool_, *inside.cell, plane(facet), crossings);
+        }
+        return inside;
+    }
+
+    ElementCells& cells_;
+    PlanePool& pool_;
+    const std::array<Point, 4>& corners_;
+    int part_;
+    bool extends_;
+    std::vector<PointSides> planes_;  ///< of the facet and of its borders, as far as they have been needed
+    std::vector<Facet::Box> boxes_;   ///< [cell], as far as they have been needed
+};
+
 bool ElementCells::divide(int part, const Facets& facets, const std::array<Point, 4>& corners, bool extends) {
+    Division division(*this, part, corners, extends);
     bool is_touched = false;
     for (const Facet& facet : *facets) {
-        if (may_touch(facet, corners)) divide(part, facet, corners, extends, is_touched);
+        if (may_touch(facet, corners)) is_touched = division.divide(facet) || is_touched;
     }
     if (is_touched) facets_.push_back(facets);
     return is_touched;
 }
 
-void ElementCells::divide(int part, const Facet& facet, const std::array<Point, 4>& corners, bool extends,
-                          bool& is_touched) {
-    const int plane = add_plane(facet.plane, corners, true);
-    std::vector<int> borders;
-    const auto border = [&](std::size_t k) {
-        while (borders.size() <= k) {
-            borders.push_back(add_plane(facet.borders[borders.size()].plane, corners, false));
+void ElementCells::replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside) {
+    const std::size_t first_new = cells_.size();
+    cells_[cell] = shared(std::move(below));
+    cells_.push_back(shared(std::move(above)));
+    for (Cell& piece : outside) cells_.push_back(shared(std::move(piece)));
+    part_of_cell_.resize(cells_.size(), part_of_cell_[cell]);
+    replace_joints(cell, first_new);
+}
+
+/// The joints of a cell that has been divided are those of its pieces, and those between them.
+void ElementCells::replace_joints(std::size_t divided, std::size_t first_new) {
+    std::vector<std::size_t> pieces{divided};
+    for (std::size_t c = first_new; c < cells_.size(); ++c) pieces.push_back(c);
+    const auto number = static_cast<int>(divided);
+    std::vector<Joint> further;
+    std::erase_if(joints_, [&](const Joint& joint) {
+        if (joint.below != number && joint.above != number) return false;
+        const bool is_below = joint.below == number;
+        for (const std::size_t piece : pieces) {
+            if (face_in(cell(piece), {joint.plane, is_below ? -1 : 1}) == nullptr) continue;
+            Joint& added = further.emplace_back(joint);
+            (is_below ? added.below : added.above) = static_cast<int>(piece);
+            added.is_known = false;
         }
-        return borders[k];
-    };
-    const std::size_t count = cells_.size();
-    bool is_cover = false;
-    for (std::size_t c = 0; c < count; ++c) {
-        if (part_of_cell_[c] != part) continue;
-        if (!is_crossed(pool_, cell(c), plane)) {
-            is_cover = is_cover || has_face_in(pool_, cell(c), plane);
-            continue;
-        }
-        bool misses = false;
-        for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
-            misses = !reaches_above(pool_, cell(c), border(k));
-        }
-        if (misses) continue;
-        Cell inside = cell(c);
-        std::vector<Cell> outside;
-        for (std::size_t k = 0; k < facet.borders.size() && !misses; ++k) {
-            if (auto pieces = split(pool_, inside, border(k))) {
-                outside.push_back(std::move(pieces->first));
-                inside = std::move(pieces->second);
-            } else {
-                misses = !reaches_above(pool_, inside, border(k));
-            }
-            misses = misses || !is_crossed(pool_, inside, plane);
-        }
-        if (misses) continue;
-        if (extends) {
-            inside = cell(c);
-            outside.clear();
-            for (std::size_t k = 0; k < facet.borders.size(); ++k) {
-                if (facet.borders[k].is_outer) continue;
-                auto pieces = split(pool_, inside, border(k));
-                if (!pieces) continue;
-                outside.push_back(std::move(pieces->first));
-                inside = std::move(pieces->second);
+        return true;
+    });
+    for (const std::size_t below : pieces) {
+        for (const Cell::Face& face : cell(below).faces) {
+            if (face.half.side > 0 || is_cut(face.half.plane)) continue;
+            for (const std::size_t above : pieces) {
+                if (above == below || face_in(cell(above), {face.half.plane, 1}) == nullptr) continue;
+                further.push_back({static_cast<int>(below), static_cast<int>(above), face.half.plane});
             }
         }
-        auto halves = split(pool_, inside, plane);
-        cells_[c] = shared(std::move(halves->first));
-        cells_.push_back(shared(std::move(halves->second)));
-        for (Cell& cell : outside) cells_.push_back(shared(std::move(cell)));
-        part_of_cell_.resize(cells_.size(), part);
-        is_touched = true;
     }
-    if (is_cover) {
-        for (std::size_t k = 0; k < facet.borders.size(); ++k) border(k);
-        covers_.push_back({plane, borders});
-        is_touched = true;
+    joints_.insert(joints_.end(), further.begin(), further.end());
+}
+
+bool ElementCells::share_area(const Joint& joint) {
+    if (part_of_cell_[static_cast<std::size_t>(joint.below)] != part_of_cell_[static_cast<std::size_t>(joint.above)]) {
+        return false;
     }
+    const Cell::Face* below = face_in(cell(static_cast<std::size_t>(joint.below)), {joint.plane, -1});
+    const Cell::Face* above = face_in(cell(static_cast<std::size_t>(joint.above)), {joint.plane, 1});
+    return are_joined(pool_, *below, *above, covers_);
 }
 
 std::vector<int> ElementCells::regroup() {
@@ -98,40 +243,28 @@ std::vector<int> ElementCells::regroup() {
         while (group[cell] != cell) cell = group[cell] = group[group[cell]];
         return cell;
     };
-    // Open areas lie in planes of borders, which divide cells without separating them.
-    struct Side {
-        int cell;
-        Polygon polygon;
-    };
-    std::map<int, std::array<std::vector<Side>, 2>> open;
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-        const Cell& shape = cell(c);
-        for (std::size_t f = 0; f < shape.faces.size(); ++f) {
-            const HalfSpace& half = shape.faces[f].half;
-            if (half.plane < 4 || is_cut(half.plane)) continue;
-            open[half.plane][half.side > 0 ? 1 : 0].push_back({static_cast<int>(c), polygon(shape, f)});
-        }
+    const auto unite = [&](int a, int b) { group[std::max(a, b)] = std::min(a, b); };
+    for (const Joint& joint : joints_) {
+        if (joint.is_known) unite(find(joint.below), find(joint.above));
     }
-    for (const auto& [plane, sides] : open) {
-        for (const Side& below : sides[0]) {
-            for (const Side& above : sides[1]) {
-                const int a = find(below.cell), b = find(above.cell);
-                if (a == b || part_of_cell_[below.cell] != part_of_cell_[above.cell]) continue;
-                if (are_joined(pool_, below.polygon, above.polygon, covers_)) {
-                    group[std::max(a, b)] = std::min(a, b);
-                }
-            }
-        }
-    }
+    // What hangs together anyhow need not be looked at until it does not any more; what does not will never.
+    std::erase_if(joints_, [&](Joint& joint) {
+        if (joint.is_known) return false;
+        const int a = find(joint.below), b = find(joint.above);
+        if (a == b) return false;
+        if (!share_area(joint)) return true;
+        joint.is_known = true;
+        unite(a, b);
+        return false;
+    });
     std::vector<std::pair<int, int>> order;  // {part before, first cell}
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (find(static_cast<int>(c)) == static_cast<int>(c)) order.emplace_back(part_of_cell_[c], c);
     }
     std::sort(order.begin(), order.end());
-    std::vector<int> before;
-    std::map<int, int> number;
+    std::vector<int> before, number(cells_.size());
     for (const auto& [part, cell] : order) {
-        number[cell] = static_cast<int>(before.size());
+        number[static_cast<std::size_t>(cell)] = static_cast<int>(before.size());
         before.push_back(part);
     }
     for (std::size_t c = 0; c < cells_.size(); ++c) part_of_cell_[c] = number[find(static_cast<int>(c))];
@@ -205,12 +338,7 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
 
 bool ElementCells::touches(int part, int corner) const {
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-        if (part_of_cell_[c] != part) continue;
-        for (const Cell::Face& face : cell(c).faces) {
-            for (const int point : face.points) {
-                if (pool_.coordinates(point)[static_cast<std::size_t>(corner)] == 1) return true;
-            }
-        }
+        if (part_of_cell_[c] == part && (cells_[c]->corners >> corner & 1U) != 0) return true;
     }
     return false;
 }

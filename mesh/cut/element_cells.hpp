@@ -14,6 +14,7 @@ namespace lancet::mesh {
 /// A cell, which does not change, with its integrals once they have been asked for.
 struct SharedCell {
     Cell shape;
+    unsigned corners = 0;  ///< bit k: it holds corner k
     std::optional<PartMoments> moments{};
 };
 
@@ -66,17 +67,24 @@ class ElementCells {
     bool touches(int part, int corner) const;
 
   private:
-    struct FacetPlanes {
-        int plane = -1;
-        std::vector<int> borders{};
+    /// Two cells that meet in an open plane, one that separates nothing.
+    struct Joint {
+        int below = 0, above = 0;
+        int plane = 0;
+        bool is_known = false;  ///< they do share an open area; else they may
     };
-    void divide(int part, const Facet& facet, const std::array<Point, 4>& corners, bool extends, bool& is_touched);
+    class Division;
     int add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut);
+    std::shared_ptr<SharedCell> shared(Cell&& cell) const;
+    void replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside);
+    void replace_joints(std::size_t cell, std::size_t first_new);
+    bool share_area(const Joint& joint);
 
     PlanePool pool_;
     std::vector<bool> plane_is_cut_;
     std::vector<std::shared_ptr<SharedCell>> cells_;
     std::vector<int> part_of_cell_;
+    std::vector<Joint> joints_;
     std::vector<Cover> covers_;
     std::vector<Facets> facets_;  ///< which the pool refers to
     int parts_ = 1;

@@ -7,9 +7,13 @@ namespace lancet::mesh {
 
 Polygon clip(PlanePool& pool, const Polygon& polygon, const HalfSpace& half) {
     const std::size_t count = polygon.points.size();
-    std::vector<int> sides(count);
-    for (std::size_t k = 0; k < count; ++k) sides[k] = half.side * pool.side(half.plane, polygon.points[k]);
-    const auto [lowest, highest] = std::ranges::minmax(sides);
+    PointNumbers sides(count);
+    int lowest = 1, highest = -1;
+    for (std::size_t k = 0; k < count; ++k) {
+        sides[k] = half.side * pool.side(half.plane, polygon.points[k]);
+        lowest = std::min(lowest, sides[k]);
+        highest = std::max(highest, sides[k]);
+    }
     if (highest <= 0) return {.plane = polygon.plane};
     if (lowest >= 0) return polygon;
 
@@ -33,26 +37,26 @@ namespace {
 
 /// True where one of the edges of a polygon has all of the other on its outer side. Of convex polygons in one plane
 /// that share no area, an edge of one of them separates both.
-bool is_separated_by_an_edge(const PlanePool& pool, const Polygon& polygon, const Polygon& other) {
+bool is_separated_by_an_edge(const PlanePool& pool, const PolygonView& polygon, const PolygonView& other) {
     return std::ranges::any_of(polygon.edges, [&](const HalfSpace& edge) {
         return std::ranges::none_of(other.points,
                                     [&](int point) { return edge.side * pool.side(edge.plane, point) > 0; });
     });
 }
 
-bool lies_in(const PlanePool& pool, const Polygon& polygon, int plane) {
+bool lies_in(const PlanePool& pool, const PolygonView& polygon, int plane) {
     return std::ranges::all_of(polygon.points, [&](int point) { return pool.side(plane, point) == 0; });
 }
 
 }  // namespace
 
-bool are_joined(PlanePool& pool, const Polygon& a, const Polygon& b, std::span<const Cover> covers) {
+bool are_joined(PlanePool& pool, const PolygonView& a, const PolygonView& b, std::span<const Cover> covers) {
     if (is_separated_by_an_edge(pool, a, b) || is_separated_by_an_edge(pool, b, a)) return false;
     std::vector<Polygon> open;
     for (const Cover& cover : covers) {
         if (!lies_in(pool, a, cover.plane)) continue;
         if (open.empty()) {
-            open.push_back(a);
+            open.push_back({a.plane, {a.points.begin(), a.points.end()}, {a.edges.begin(), a.edges.end()}});
             for (const HalfSpace& edge : b.edges) open.front() = clip(pool, open.front(), edge);
         }
         std::vector<Polygon> left;
