@@ -52,11 +52,16 @@ int crossing(PlanePool& pool, int from, int to, const std::array<int, 3>& planes
 
 }  // namespace
 
-int PointSides::of(int point) {
+int PointSides::find(int point) {
     const auto at = static_cast<std::size_t>(point);
     if (known_.size() <= at) known_.resize(static_cast<std::size_t>(pool_->points()), unknown);
-    if (known_[at] == unknown) known_[at] = static_cast<std::int8_t>(pool_->side(plane_, point));
-    return known_[at];
+    return known_[at] = static_cast<std::int8_t>(pool_->side(plane_, point));
+}
+
+bool PointSides::has_above(const Cell& cell) {
+    return std::ranges::any_of(cell.faces, [&](const Cell::Face& face) {
+        return std::ranges::any_of(face.points, [&](int point) { return of(point) > 0; });
+    });
 }
 
 std::array<int, 2> PointSides::range(std::span<const int> points) {
@@ -98,10 +103,6 @@ Cell whole_tetrahedron(PlanePool& pool) {
         cell.faces.push_back(std::move(face));
     }
     return cell;
-}
-
-bool reaches_above(const PlanePool& pool, const Cell& cell, int plane) {
-    return PointSides(pool, plane).range(cell)[1] > 0;
 }
 
 bool has_face_in(const Cell& cell, PointSides& sides) {

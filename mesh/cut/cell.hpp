@@ -29,14 +29,21 @@ class PointSides {
     PointSides(const PlanePool& pool, int plane) : pool_(&pool), plane_(plane) {}
 
     int plane() const noexcept { return plane_; }
-    int of(int point);
+    int of(int point) {
+        const auto at = static_cast<std::size_t>(point);
+        return at < known_.size() && known_[at] != unknown ? known_[at] : find(point);
+    }
     /// The lowest and the highest side of the points of a cell.
     std::array<int, 2> range(const Cell& cell);
     std::array<int, 2> range(std::span<const int> points);
+    /// True where some of the cell lies on the positive side.
+    bool has_above(const Cell& cell);
     /// Of points that have been taken back nothing is known.
     void keep_points(int count);
 
   private:
+    int find(int point);
+
     static constexpr std::int8_t unknown = 2;
     const PlanePool* pool_;
     int plane_;
@@ -61,8 +68,6 @@ std::optional<std::pair<Cell, Cell>> split(PlanePool& pool, const Cell& cell, Po
 /// The corners of the section in which a plane meets a cell that it crosses, in no order.
 PointNumbers section_points(PlanePool& pool, const Cell& cell, PointSides& sides, Crossings& crossings);
 
-/// True where some of the cell lies on the positive side of the plane.
-bool reaches_above(const PlanePool& pool, const Cell& cell, int plane);
 /// True where a face of the cell lies in the plane.
 bool has_face_in(const Cell& cell, PointSides& sides);
 

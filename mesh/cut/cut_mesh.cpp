@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <string>
 
 #include "lancet/kernels/error.hpp"
@@ -33,12 +32,30 @@ void unite(std::vector<std::int32_t>& group, std::int32_t a, std::int32_t b) {
     group[std::max(a, b)] = std::min(a, b);
 }
 
+void sort_unique(std::vector<std::int32_t>& numbers) {
+    std::ranges::sort(numbers);
+    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+}
+
+/// The sides of a box beyond which a place lies: a tetrahedron's box and this one have no place in common where all its
+/// corners lie beyond one of them.
+unsigned sides_beyond(const Facet::Box& box, const Point& place) {
+    unsigned sides = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        sides |= (place[axis] < box[0][axis] ? 1U : 0U) << (2 * axis);
+        sides |= (place[axis] > box[1][axis] ? 2U : 0U) << (2 * axis);
+    }
+    return sides;
+}
+
 }  // namespace
 
 /// What a cut has done so far.
 struct CutMesh::Change {
-    std::set<std::int32_t> elements{};              ///< that were touched
+    std::vector<std::int32_t> touched{};  ///< elements, ascending
+    std::vector<std::int32_t> opened{};   ///< those of them that have new parts, or something new along a face
     std::map<std::int32_t, std::int32_t> before{};  ///< part -> the part that it was, where that is another
+    std::map<std::int64_t, PartPairs> joints{};     ///< of faces, as they are now
     CutReport report{};
 
     std::int32_t part_before(std::int32_t part) const {
@@ -53,6 +70,7 @@ CutMesh::CutMesh(TetMesh mesh) : mesh_(std::make_shared<const TetMesh>(std::move
     element_of_part_.resize(parts_.size());
     std::iota(element_of_part_.begin(), element_of_part_.end(), 0);
     parent_of_part_.assign(parts_.size(), -1);
+    place_.assign(parts_.size(), -1);
     node_of_copy_.resize(mesh_->nodes().size());
     std::iota(node_of_copy_.begin(), node_of_copy_.end(), 0);
     parent_of_copy_.assign(node_of_copy_.size(), -1);
@@ -72,20 +90,21 @@ CutReport CutMesh::cut(const CutSurface& surface, FrontTreatment front, std::spa
     }
     change.report.seconds_geometry = seconds_since(start);
 
+    // Where a cut has neither divided an element nor run along its faces, everything hangs together as it did.
     const auto start_topology = Clock::now();
-    std::map<FaceKey, PartPairs> joints;
-    for (const std::int32_t element : change.elements) join_faces(element, change, joints);
-    for (auto& [key, pairs] : joints) joints_[key] = std::move(pairs);
-    std::set<std::int32_t> nodes;
-    for (const std::int32_t element : change.elements) {
+    for (const std::int32_t element : change.opened) join_faces(element, change);
+    for (auto& [face, pairs] : change.joints) joints_[face] = std::move(pairs);
+    std::vector<std::int32_t> nodes;
+    for (const std::int32_t element : change.opened) {
         const Tetrahedron& corners = mesh_->tetrahedra()[static_cast<std::size_t>(element)];
-        nodes.insert(corners.begin(), corners.end());
+        nodes.insert(nodes.end(), corners.begin(), corners.end());
     }
+    sort_unique(nodes);
     for (const std::int32_t node : nodes) regroup_copies(node);
     change.report.seconds_topology = seconds_since(start_topology);
 
-    change.report.elements.assign(change.elements.begin(), change.elements.end());
-    change.report.touched_elements = static_cast<std::int32_t>(change.elements.size());
+    change.report.elements = std::move(change.touched);
+    change.report.touched_elements = static_cast<std::int32_t>(change.report.elements.size());
     change.report.new_parts = static_cast<std::int32_t>(parts_.size() - parts_before);
     change.report.new_copies = static_cast<std::int32_t>(node_of_copy_.size() - copies_before);
     return change.report;
@@ -109,16 +128,18 @@ void CutMesh::require_finite(const CutSurface& surface, std::span<const Point> p
 std::vector<std::int32_t> CutMesh::elements_near(const CutSurface& surface, std::span<const Point> positions) const {
     Facet::Box all = surface.facets().front().bounds;
     for (const Facet& facet : surface.facets()) all = united(all, facet.bounds);
-    std::vector<std::int32_t> near;
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-        const std::array<Point, 4> corners = corners_of(static_cast<std::int32_t>(part), positions);
-        if (!overlap(all, corners)) continue;
-        if (std::ranges::any_of(surface.facets(), [&](const Facet& facet) { return may_touch(facet, corners); })) {
-            near.push_back(element_of_part_[part]);
-        }
+    std::vector<std::uint8_t> beyond;  // by node, or by copy
+    const bool is_at_rest = positions.empty();
+    for (const Point& place : is_at_rest ? mesh_->nodes() : positions) {
+        beyond.push_back(static_cast<std::uint8_t>(sides_beyond(all, place)));
     }
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
+    const std::span<const Tetrahedron> corners = is_at_rest ? mesh_->tetrahedra() : std::span(parts_);
+    std::vector<std::int32_t> near;
+    for (std::size_t part = 0; part < corners.size(); ++part) {
+        const auto& [a, b, c, d] = corners[part];
+        if ((beyond[a] & beyond[b] & beyond[c] & beyond[d]) == 0) near.push_back(element_of_part_[part]);
+    }
+    sort_unique(near);
     return near;
 }
 
@@ -134,21 +155,35 @@ std::array<Point, 4> CutMesh::corners_of(std::int32_t part, std::span<const Poin
 
 void CutMesh::divide(std::int32_t element, const CutSurface& surface, FrontTreatment front,
                      std::span<const Point> positions, Change& change) {
-    const auto found = cells_.find(element);
-    const bool is_new = found == cells_.end();
-    auto cells = is_new ? ElementCells() : *found->second.cells;
-    const std::vector<std::int32_t> old_parts = is_new ? std::vector{element} : found->second.parts;
+    static const ElementCells whole;
+    const std::span<const std::int32_t> own_parts = parts_in(element);
+    std::vector<std::array<Point, 4>> corners;
+    std::vector<std::vector<const Facet*>> near;
+    bool is_near = false;
+    for (const std::int32_t part : own_parts) {
+        corners.push_back(corners_of(part, positions));
+        // At rest all parts of an element are in one place.
+        near.push_back(positions.empty() && !near.empty() ? near.front()
+                                                          : facets_near(surface.facets(), corners.back()));
+        is_near = is_near || !near.back().empty();
+    }
+    if (!is_near) return;
+    const CutElement* known = cut_element(element);
+    ElementCells cells = known == nullptr ? whole : *known->cells;
+    const std::vector<std::int32_t> old_parts(own_parts.begin(), own_parts.end());
+    const std::size_t old_covers = cells.covers().size();
     bool is_touched = false;
     for (std::size_t p = 0; p < old_parts.size(); ++p) {
-        is_touched = cells.divide(static_cast<int>(p), surface.shared_facets(), corners_of(old_parts[p], positions),
+        is_touched = cells.divide(static_cast<int>(p), surface.shared_facets(), near[p], corners[p],
                                   front == FrontTreatment::extend) ||
                      is_touched;
     }
     if (!is_touched) return;
-    change.elements.insert(element);
+    change.touched.push_back(element);
 
     const std::vector<int> before = cells.regroup();
-    CutElement divided;
+    CutElement divided{};
+    divided.element = element;
     for (int p = 0; p < cells.parts(); ++p) divided.moments.push_back(cells.moments(p));
     // The largest piece of a part keeps its number.
     std::vector<int> largest(old_parts.size(), -1);
@@ -171,9 +206,17 @@ void CutMesh::divide(std::int32_t element, const CutSurface& surface, FrontTreat
         parent_of_part_.push_back(parent);
         change.before[part] = parent;
     }
-    if (before.size() > old_parts.size()) ++change.report.divided_elements;
+    const bool is_divided = before.size() > old_parts.size();
+    if (is_divided) ++change.report.divided_elements;
+    if (is_divided || cells.covers().size() > old_covers) change.opened.push_back(element);
     divided.cells = std::make_shared<const ElementCells>(std::move(cells));
-    cells_[element] = std::move(divided);
+    std::int32_t& place = place_[static_cast<std::size_t>(element)];
+    if (place < 0) {
+        place = static_cast<std::int32_t>(cut_elements_.size());
+        cut_elements_.push_back(std::move(divided));
+    } else {
+        cut_elements_[static_cast<std::size_t>(place)] = std::move(divided);
+    }
 }
 
 int CutMesh::corner_towards(std::int32_t element, std::int32_t neighbour) const {
@@ -181,136 +224,165 @@ int CutMesh::corner_towards(std::int32_t element, std::int32_t neighbour) const 
     return static_cast<int>(std::ranges::find(neighbours, neighbour) - neighbours.begin());
 }
 
-CutMesh::FaceKey CutMesh::key_of(std::int32_t element, int corner) const {
+/// A number for the face of an element opposite a corner, the same from both sides: that of the lower one.
+std::int64_t CutMesh::face_of(std::int32_t element, int corner) const {
     const std::int32_t neighbour =
         base_->neighbours[static_cast<std::size_t>(element)][static_cast<std::size_t>(corner)];
-    return element < neighbour ? FaceKey{element, corner} : FaceKey{neighbour, corner_towards(neighbour, element)};
+    return element < neighbour || neighbour < 0
+               ? 4 * static_cast<std::int64_t>(element) + corner
+               : 4 * static_cast<std::int64_t>(neighbour) + corner_towards(neighbour, element);
 }
 
-void CutMesh::join_faces(std::int32_t element, const Change& change, std::map<FaceKey, PartPairs>& joints) const {
+void CutMesh::join_faces(std::int32_t element, Change& change) const {
     for (int corner = 0; corner < 4; ++corner) {
         if (base_->neighbours[static_cast<std::size_t>(element)][static_cast<std::size_t>(corner)] < 0) continue;
-        const FaceKey key = key_of(element, corner);
-        if (joints.contains(key)) continue;
-        const std::int32_t a = key.first;
-        const std::int32_t b = base_->neighbours[static_cast<std::size_t>(a)][static_cast<std::size_t>(key.second)];
-        FaceSide side_a{.cells = cells(a), .face = key.second}, side_b{.cells = cells(b), .face = corner_towards(b, a)};
+        const std::int64_t face = face_of(element, corner);
+        const auto [place, is_new] = change.joints.try_emplace(face);
+        if (!is_new) continue;
+        const auto a = static_cast<std::int32_t>(face / 4);
+        const int face_a = static_cast<int>(face % 4);
+        const std::int32_t b = base_->neighbours[static_cast<std::size_t>(a)][static_cast<std::size_t>(face_a)];
+        FaceSide side_a{.cells = cells(a), .face = face_a}, side_b{.cells = cells(b), .face = corner_towards(b, a)};
         const Tetrahedron &nodes_a = mesh_->tetrahedra()[static_cast<std::size_t>(a)],
                           &nodes_b = mesh_->tetrahedra()[static_cast<std::size_t>(b)];
         for (int k = 0; k < 3; ++k) {
-            const int corner_a = (key.second + 1 + k) % 4;
+            const int corner_a = (face_a + 1 + k) % 4;
             side_a.corners[static_cast<std::size_t>(k)] = corner_a;
             side_b.corners[static_cast<std::size_t>(k)] = static_cast<int>(
                 std::ranges::find(nodes_b, nodes_a[static_cast<std::size_t>(corner_a)]) - nodes_b.begin());
         }
-        const std::vector<std::int32_t> parts_a = parts_of_element(a), parts_b = parts_of_element(b);
-        const auto old = joints_.find(key);
+        const std::span<const std::int32_t> parts_a = parts_in(a), parts_b = parts_in(b);
+        const auto old = joints_.find(face);
         const auto may_join = [&](int p, int q) {
             if (old == joints_.end()) return true;
             const std::pair before(change.part_before(parts_a[static_cast<std::size_t>(p)]),
                                    change.part_before(parts_b[static_cast<std::size_t>(q)]));
             return std::ranges::find(old->second, before) != old->second.end();
         };
-        PartPairs& pairs = joints[key];
         for (const auto& [p, q] : joined_parts(side_a, side_b, may_join)) {
-            pairs.emplace_back(parts_a[static_cast<std::size_t>(p)], parts_b[static_cast<std::size_t>(q)]);
+            place->second.emplace_back(parts_a[static_cast<std::size_t>(p)], parts_b[static_cast<std::size_t>(q)]);
         }
     }
-}
-
-bool CutMesh::touches(std::int32_t part, int corner) const {
-    const auto found = cells_.find(element_of_part_[static_cast<std::size_t>(part)]);
-    if (found == cells_.end()) return true;
-    const auto local = std::ranges::find(found->second.parts, part) - found->second.parts.begin();
-    return found->second.cells->touches(static_cast<int>(local), corner);
 }
 
 void CutMesh::regroup_copies(std::int32_t node) {
     struct Member {
         std::int32_t part;
         int corner;
+        bool is_at_node;
+        double fraction;
     };
-    std::vector<Member> members;
-    std::map<std::int32_t, std::int32_t> place;  // part -> member
     const std::span<const std::int32_t> star = base_->stars.of(node);
+    std::vector<Member> members;
+    std::vector<std::int32_t> first;  // of the members of each element around the node
     for (const std::int32_t element : star) {
         const Tetrahedron& nodes = mesh_->tetrahedra()[static_cast<std::size_t>(element)];
         const int corner = static_cast<int>(std::ranges::find(nodes, node) - nodes.begin());
-        for (const std::int32_t part : parts_of_element(element)) {
-            place[part] = static_cast<std::int32_t>(members.size());
-            members.push_back({part, corner});
+        const CutElement* cut = cut_element(element);
+        first.push_back(static_cast<std::int32_t>(members.size()));
+        if (cut == nullptr) {
+            members.push_back({element, corner, true, 1});
+            continue;
+        }
+        for (std::size_t p = 0; p < cut->parts.size(); ++p) {
+            members.push_back(
+                {cut->parts[p], corner, cut->cells->touches(static_cast<int>(p), corner), cut->moments[p].fraction});
         }
     }
+    first.push_back(static_cast<std::int32_t>(members.size()));
     const auto copy_of = [&](std::int32_t member) -> std::int32_t& {
         return parts_[static_cast<std::size_t>(members[member].part)][static_cast<std::size_t>(members[member].corner)];
+    };
+    const auto member_of = [&](std::size_t in_star, std::int32_t part) {
+        std::int32_t member = first[in_star];
+        while (members[member].part != part) ++member;
+        return member;
     };
     std::vector<std::int32_t> group(members.size()), elements(members.size());
     std::iota(group.begin(), group.end(), 0);
     elements = group;  // the same, had nothing been cut
     const auto join = [&](std::int32_t a, std::int32_t b) {
-        if (copy_of(place.at(a)) == copy_of(place.at(b))) unite(group, place.at(a), place.at(b));
+        if (copy_of(a) == copy_of(b)) unite(group, a, b);
     };
-    for (const std::int32_t element : star) {
-        const std::vector<std::int32_t> parts = parts_of_element(element);
-        for (const std::int32_t part : parts) unite(elements, place.at(parts.front()), place.at(part));
+    for (std::size_t s = 0; s < star.size(); ++s) {
+        const std::int32_t element = star[s];
+        for (std::int32_t member = first[s] + 1; member < first[s + 1]; ++member) unite(elements, first[s], member);
         const Tetrahedron& nodes = mesh_->tetrahedra()[static_cast<std::size_t>(element)];
         for (int corner = 0; corner < 4; ++corner) {
             const std::int32_t neighbour =
                 base_->neighbours[static_cast<std::size_t>(element)][static_cast<std::size_t>(corner)];
             if (neighbour < element || nodes[static_cast<std::size_t>(corner)] == node) continue;
-            unite(elements, place.at(parts.front()), place.at(parts_of_element(neighbour).front()));
-            const auto joints = joints_.find({element, corner});
+            const auto other = static_cast<std::size_t>(std::ranges::find(star, neighbour) - star.begin());
+            unite(elements, first[s], first[other]);
+            const bool is_cut = cut_element(element) != nullptr || cut_element(neighbour) != nullptr;
+            const auto joints = is_cut ? joints_.find(4 * static_cast<std::int64_t>(element) + corner) : joints_.end();
             if (joints == joints_.end()) {
-                join(element, neighbour);
+                join(member_of(s, element), member_of(other, neighbour));
             } else {
-                for (const auto& [a, b] : joints->second) join(a, b);
+                for (const auto& [a, b] : joints->second) join(member_of(s, a), member_of(other, b));
             }
         }
     }
     // Elements that share the node but no face around it hang together at the node itself.
-    std::map<std::int32_t, std::int32_t> at_node;
+    std::vector<std::pair<std::int32_t, std::int32_t>> at_node;  // {what hangs together, member}
     for (std::size_t m = 0; m < members.size(); ++m) {
         const auto member = static_cast<std::int32_t>(m);
-        if (touches(members[m].part, members[m].corner)) at_node.try_emplace(find(elements, member), member);
+        if (members[m].is_at_node) at_node.emplace_back(find(elements, member), member);
     }
-    for (const auto& [first, member] : at_node) {
-        join(members[at_node.begin()->second].part, members[member].part);
+    if (!at_node.empty()) {
+        const auto [lowest, first_member] = *std::ranges::min_element(at_node);
+        for (const auto& [root, member] : at_node) {
+            const bool is_first =
+                std::ranges::find(at_node, root, [](const auto& one) { return one.first; })->second == member;
+            if (root != lowest && is_first) join(first_member, member);
+        }
     }
 
     // Of each copy, the group that holds the node keeps the number; the largest, where several touch it or none.
     struct Group {
+        std::int32_t copy, first;
         bool is_at_node = false;
         double size = 0;
-        std::vector<std::int32_t> members{};
     };
-    std::map<std::int32_t, std::map<std::int32_t, Group>> groups_of_copy;
+    std::vector<Group> groups;
+    std::vector<std::int32_t> number(members.size(), -1);  // by the group's first member
     for (std::size_t m = 0; m < members.size(); ++m) {
         const auto member = static_cast<std::int32_t>(m);
-        Group& found = groups_of_copy[copy_of(member)][find(group, member)];
-        found.is_at_node = found.is_at_node || touches(members[m].part, members[m].corner);
-        found.size += moments(members[m].part).fraction *
-                      mesh_->volume(element_of_part_[static_cast<std::size_t>(members[m].part)]);
-        found.members.push_back(member);
+        const std::int32_t root = find(group, member);
+        if (number[root] < 0) {
+            number[root] = static_cast<std::int32_t>(groups.size());
+            groups.push_back({copy_of(member), root});
+        }
+        Group& found = groups[number[root]];
+        found.is_at_node = found.is_at_node || members[m].is_at_node;
+        found.size += members[m].fraction * mesh_->volume(element_of_part_[static_cast<std::size_t>(members[m].part)]);
     }
-    for (const auto& [copy, groups] : groups_of_copy) {
-        const auto keeper = std::ranges::max_element(
-            groups, {}, [](const auto& entry) { return std::pair(entry.second.is_at_node, entry.second.size); });
-        for (auto it = groups.begin(); it != groups.end(); ++it) {
-            if (it == keeper) continue;
+    std::ranges::sort(groups, {}, [](const Group& one) { return std::pair(one.copy, one.first); });
+    for (auto begin = groups.begin(); begin != groups.end();) {
+        const std::int32_t copy = begin->copy;
+        const auto end = std::find_if(begin, groups.end(), [&](const Group& one) { return one.copy != copy; });
+        const auto keeper = std::max_element(begin, end, [](const Group& a, const Group& b) {
+            return std::pair(a.is_at_node, a.size) < std::pair(b.is_at_node, b.size);
+        });
+        for (auto one = begin; one != end; ++one) {
+            if (one == keeper) continue;
             const auto new_copy = static_cast<std::int32_t>(node_of_copy_.size());
             node_of_copy_.push_back(node);
             parent_of_copy_.push_back(copy);
             further_copies_[node].push_back(new_copy);
-            for (const std::int32_t member : it->second.members) copy_of(member) = new_copy;
+            for (std::size_t m = 0; m < members.size(); ++m) {
+                const auto member = static_cast<std::int32_t>(m);
+                if (find(group, member) == one->first) copy_of(member) = new_copy;
+            }
         }
+        begin = end;
     }
 }
 
 PartMoments CutMesh::moments(std::int32_t part) const {
-    const auto found = cells_.find(element_of_part_[static_cast<std::size_t>(part)]);
-    if (found == cells_.end()) return {};
-    const auto local = std::ranges::find(found->second.parts, part) - found->second.parts.begin();
-    return found->second.moments[static_cast<std::size_t>(local)];
+    const CutElement* cut = cut_element(element_of_part_[static_cast<std::size_t>(part)]);
+    if (cut == nullptr) return {};
+    return cut->moments[static_cast<std::size_t>(std::ranges::find(cut->parts, part) - cut->parts.begin())];
 }
 
 std::vector<std::int32_t> CutMesh::copies_of_node(std::int32_t node) const {
@@ -320,9 +392,14 @@ std::vector<std::int32_t> CutMesh::copies_of_node(std::int32_t node) const {
     return copies;
 }
 
+std::span<const std::int32_t> CutMesh::parts_in(std::int32_t element) const {
+    if (const CutElement* cut = cut_element(element)) return cut->parts;
+    return {&element_of_part_[static_cast<std::size_t>(element)], 1};  // the number of its only part is its own
+}
+
 std::vector<std::int32_t> CutMesh::parts_of_element(std::int32_t element) const {
-    const auto found = cells_.find(element);
-    return found == cells_.end() ? std::vector{element} : found->second.parts;
+    const std::span<const std::int32_t> parts = parts_in(element);
+    return {parts.begin(), parts.end()};
 }
 
 std::vector<Point> CutMesh::rest_positions() const {
@@ -337,7 +414,7 @@ CutMesh::FaceState CutMesh::face_state(std::int32_t part, int corner) const {
     if (base_->neighbours[static_cast<std::size_t>(element)][static_cast<std::size_t>(corner)] < 0) {
         return FaceState::outer;
     }
-    const auto joints = joints_.find(key_of(element, corner));
+    const auto joints = joints_.find(face_of(element, corner));
     if (joints == joints_.end()) return FaceState::joined;
     const bool is_joined = std::ranges::any_of(
         joints->second, [&](const auto& pair) { return pair.first == part || pair.second == part; });
@@ -346,20 +423,20 @@ CutMesh::FaceState CutMesh::face_state(std::int32_t part, int corner) const {
 
 std::vector<std::int32_t> CutMesh::touched_elements() const {
     std::vector<std::int32_t> elements;
-    for (const auto& [element, cells] : cells_) elements.push_back(element);
+    for (const CutElement& cut : cut_elements_) elements.push_back(cut.element);
+    std::ranges::sort(elements);
     return elements;
 }
 
 const ElementCells* CutMesh::cells(std::int32_t element) const {
-    const auto found = cells_.find(element);
-    return found == cells_.end() ? nullptr : found->second.cells.get();
+    const CutElement* cut = cut_element(element);
+    return cut == nullptr ? nullptr : cut->cells.get();
 }
 
 MaterialPoint CutMesh::material_point(std::int32_t element, const Barycentric& place) const {
-    const auto found = cells_.find(element);
-    if (found == cells_.end()) return {element, place};
-    const ElementCells& cells = *found->second.cells;
-    return {found->second.parts[static_cast<std::size_t>(cells.part_at(place))], place};
+    const CutElement* cut = cut_element(element);
+    if (cut == nullptr) return {element, place};
+    return {cut->parts[static_cast<std::size_t>(cut->cells->part_at(place))], place};
 }
 
 }  // namespace lancet::mesh

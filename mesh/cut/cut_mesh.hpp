@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -55,7 +56,7 @@ class CutMesh {
     explicit CutMesh(TetMesh mesh);
 
     /// Cuts along a surface, given at rest or, with `positions` of all copies, where they are now. The work is
-    /// proportional to the number of elements near the surface, but for one look at the boxes of all.
+    /// proportional to the number of elements near the surface, but for one look at the places of all nodes.
     /// Throws lancet::Error where the positions are not as many as copies, or a coordinate or the value of a level set
     /// is not finite; nothing is cut then.
     CutReport cut(const CutSurface& surface, FrontTreatment front = FrontTreatment::retract,
@@ -99,8 +100,8 @@ class CutMesh {
 
   private:
     using PartPairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
-    using FaceKey = std::pair<std::int32_t, std::int32_t>;  ///< element and its corner, of the lower of both elements
     struct CutElement {
+        std::int32_t element = 0;
         std::shared_ptr<const ElementCells> cells;
         std::vector<std::int32_t> parts;  ///< numbers of its parts in all
         std::vector<PartMoments> moments;
@@ -115,11 +116,15 @@ class CutMesh {
     std::vector<std::int32_t> elements_near(const CutSurface& surface, std::span<const Point> positions) const;
     void divide(std::int32_t element, const CutSurface& surface, FrontTreatment front, std::span<const Point> positions,
                 Change& change);
-    void join_faces(std::int32_t element, const Change& change, std::map<FaceKey, PartPairs>& joints) const;
+    void join_faces(std::int32_t element, Change& change) const;
     void regroup_copies(std::int32_t node);
     std::array<Point, 4> corners_of(std::int32_t part, std::span<const Point> positions) const;
-    bool touches(std::int32_t part, int corner) const;
-    FaceKey key_of(std::int32_t element, int corner) const;
+    std::span<const std::int32_t> parts_in(std::int32_t element) const;
+    const CutElement* cut_element(std::int32_t element) const {
+        const std::int32_t place = place_[static_cast<std::size_t>(element)];
+        return place < 0 ? nullptr : &cut_elements_[static_cast<std::size_t>(place)];
+    }
+    std::int64_t face_of(std::int32_t element, int corner) const;
     int corner_towards(std::int32_t element, std::int32_t neighbour) const;
 
     std::shared_ptr<const TetMesh> mesh_;
@@ -127,8 +132,10 @@ class CutMesh {
     std::vector<Tetrahedron> parts_;
     std::vector<std::int32_t> element_of_part_, parent_of_part_;
     std::vector<std::int32_t> node_of_copy_, parent_of_copy_;
-    std::map<std::int32_t, CutElement> cells_;
-    std::map<FaceKey, PartPairs> joints_;  ///< of faces that cuts touch; elsewhere the only parts are joined
+    std::vector<std::int32_t> place_;  ///< [element] among the cut ones; -1: no cut touches it
+    std::vector<CutElement> cut_elements_;
+    /// Of faces whose elements cuts divide, by face_of; elsewhere the only parts are joined.
+    std::unordered_map<std::int64_t, PartPairs> joints_;
     std::map<std::int32_t, std::vector<std::int32_t>> further_copies_;  ///< of nodes that have more than one
 };
 

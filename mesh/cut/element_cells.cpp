@@ -35,13 +35,6 @@ Facet::Box box_of(const PlanePool& pool, const Cell& cell, const std::array<Poin
     return box;
 }
 
-bool are_apart(const Facet::Box& a, const Facet::Box& b) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (a[0][axis] > b[1][axis] || b[0][axis] > a[1][axis]) return true;
-    }
-    return false;
-}
-
 const Cell::Face* face_in(const Cell& cell, const HalfSpace& half) {
     const auto found = std::ranges::find_if(cell.faces, [&](const Cell::Face& face) {
         return face.half.plane == half.plane && face.half.side == half.side;
@@ -115,15 +108,18 @@ class ElementCells::Division {
         return planes_[k + 1];
     }
 
-    const Facet::Box& box(std::size_t cell) {
-        while (boxes_.size() <= cell) boxes_.push_back(box_of(pool_, cells_.cell(boxes_.size()), corners_));
-        return boxes_[cell];
+    const Facet::Box& box(std::size_t number) {
+        SharedCell& cell = *cells_.cells_[number];
+        if (!cell.place || cell.place->corners != corners_) {
+            cell.place = {corners_, box_of(pool_, cell.shape, corners_)};
+        }
+        return cell.place->box;
     }
 
     /// Divides a cell that the plane of the facet crosses; false where the facet itself does not.
     bool divide(const Facet& facet, std::size_t c) {
         for (std::size_t k = 0; k < facet.borders.size(); ++k) {
-            if (border(facet, k).range(cells_.cell(c))[1] <= 0) return false;
+            if (!border(facet, k).has_above(cells_.cell(c))) return false;
         }
         const int points = pool_.points();
         Crossings crossings;
@@ -136,7 +132,6 @@ class ElementCells::Division {
         }
         auto halves = split(pool_, inside->cell ? *inside->cell : cells_.cell(c), plane(facet), crossings);
         cells_.replace(c, std::move(halves->first), std::move(halves->second), std::move(inside->outside));
-        boxes_[c] = box_of(pool_, cells_.cell(c), corners_);
         return true;
     }
 
@@ -176,15 +171,13 @@ class ElementCells::Division {
     int part_;
     bool extends_;
     std::vector<PointSides> planes_;  ///< of the facet and of its borders, as far as they have been needed
-    std::vector<Facet::Box> boxes_;   ///< [cell], as far as they have been needed
 };
 
-bool ElementCells::divide(int part, const Facets& facets, const std::array<Point, 4>& corners, bool extends) {
+bool ElementCells::divide(int part, const Facets& facets, std::span<const Facet* const> near,
+                          const std::array<Point, 4>& corners, bool extends) {
     Division division(*this, part, corners, extends);
     bool is_touched = false;
-    for (const Facet& facet : *facets) {
-        if (may_touch(facet, corners)) is_touched = division.divide(facet) || is_touched;
-    }
+    for (const Facet* facet : near) is_touched = division.divide(*facet) || is_touched;
     if (is_touched) facets_.push_back(facets);
     return is_touched;
 }
@@ -207,12 +200,15 @@ void ElementCells::replace_joints(std::size_t divided, std::size_t first_new) {
     std::erase_if(joints_, [&](const Joint& joint) {
         if (joint.below != number && joint.above != number) return false;
         const bool is_below = joint.below == number;
+        const std::size_t first = further.size();
         for (const std::size_t piece : pieces) {
             if (face_in(cell(piece), {joint.plane, is_below ? -1 : 1}) == nullptr) continue;
             Joint& added = further.emplace_back(joint);
             (is_below ? added.below : added.above) = static_cast<int>(piece);
-            added.is_known = false;
         }
+        // A face that one piece has alone is as it was.
+        const bool is_shared = further.size() > first + 1;
+        for (std::size_t k = first; is_shared && k < further.size(); ++k) further[k].is_known = false;
         return true;
     });
     for (const std::size_t below : pieces) {
@@ -243,20 +239,13 @@ std::vector<int> ElementCells::regroup() {
         while (group[cell] != cell) cell = group[cell] = group[group[cell]];
         return cell;
     };
-    const auto unite = [&](int a, int b) { group[std::max(a, b)] = std::min(a, b); };
-    for (const Joint& joint : joints_) {
-        if (joint.is_known) unite(find(joint.below), find(joint.above));
-    }
-    // What hangs together anyhow need not be looked at until it does not any more; what does not will never.
-    std::erase_if(joints_, [&](Joint& joint) {
-        if (joint.is_known) return false;
-        const int a = find(joint.below), b = find(joint.above);
-        if (a == b) return false;
-        if (!share_area(joint)) return true;
+    // What does not share an area never will.
+    std::erase_if(joints_, [&](const Joint& joint) { return !joint.is_known && !share_area(joint); });
+    for (Joint& joint : joints_) {
         joint.is_known = true;
-        unite(a, b);
-        return false;
-    });
+        const int a = find(joint.below), b = find(joint.above);
+        group[std::max(a, b)] = std::min(a, b);
+    }
     std::vector<std::pair<int, int>> order;  // {part before, first cell}
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (find(static_cast<int>(c)) == static_cast<int>(c)) order.emplace_back(part_of_cell_[c], c);
@@ -330,7 +319,7 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
             for (const int point : pieces->second.faces.back().points) polygon.push_back(pool.coordinates(point));
             continue;
         }
-        const bool is_above = reaches_above(pool, cell(c), plane);
+        const bool is_above = PointSides(pool, plane).has_above(cell(c));
         add_cell(is_above ? halves.above : halves.below, pool, cell(c));
     }
     return halves;

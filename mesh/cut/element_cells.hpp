@@ -16,6 +16,12 @@ struct SharedCell {
     Cell shape;
     unsigned corners = 0;  ///< bit k: it holds corner k
     std::optional<PartMoments> moments{};
+    /// A box around it, where the corners of its tetrahedron were last.
+    struct Place {
+        std::array<Point, 4> corners{};
+        Facet::Box box{};
+    };
+    std::optional<Place> place{};
 };
 
 /// One tetrahedron divided by cuts: convex cells, and the parts that they form. Cells that share an open area belong to
@@ -26,10 +32,12 @@ class ElementCells {
 
     ElementCells();
 
-    /// Divides the cells of a part by the facets, whose functions are taken at `corners`: the places of the corners at
-    /// rest, or where the part has moved them. With `extends`, a facet that crosses a cell goes on behind its outer
-    /// borders, to the faces of the element. Returns true where a facet crosses a cell or covers a face of one.
-    bool divide(int part, const Facets& facets, const std::array<Point, 4>& corners, bool extends);
+    /// Divides the cells of a part by those facets of a surface that are near (see facets_near), whose functions are
+    /// taken at `corners`: the places of the corners at rest, or where the part has moved them. With `extends`, a facet
+    /// that crosses a cell goes on behind its outer borders, to the faces of the element. Returns true where a facet
+    /// crosses a cell or covers a face of one.
+    bool divide(int part, const Facets& facets, std::span<const Facet* const> near, const std::array<Point, 4>& corners,
+                bool extends);
     /// Numbers the parts anew, those of lower parts first. Returns the part that each one was in before.
     std::vector<int> regroup();
 
@@ -71,7 +79,7 @@ class ElementCells {
     struct Joint {
         int below = 0, above = 0;
         int plane = 0;
-        bool is_known = false;  ///< they do share an open area; else they may
+        bool is_known = false;  ///< they share an open area; else they may
     };
     class Division;
     int add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut);

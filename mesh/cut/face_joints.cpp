@@ -81,8 +81,27 @@ class Side {
     std::map<int, int> traces_;
 };
 
-bool is_whole(const FaceSide& side) {
-    return side.cells == nullptr || (side.cells->parts() == 1 && side.cells->covers().empty());
+/// The parts that have a piece of the face, ascending.
+std::vector<int> parts_at(const FaceSide& side) {
+    if (side.cells == nullptr) return {0};
+    std::vector<int> parts;
+    for (std::size_t c = 0; c < side.cells->cells(); ++c) {
+        const int part = side.cells->part_of_cell(c);
+        if (std::ranges::find(parts, part) != parts.end()) continue;
+        const bool has_piece = std::ranges::any_of(
+            side.cells->cell(c).faces, [&](const Cell::Face& face) { return face.half.plane == side.face; });
+        if (has_piece) parts.push_back(part);
+    }
+    std::ranges::sort(parts);
+    return parts;
+}
+
+bool is_covered(const FaceSide& side) {
+    if (side.cells == nullptr) return false;
+    return std::ranges::any_of(side.cells->covers(), [&](const Cover& cover) {
+        return std::ranges::all_of(
+            side.corners, [&](int corner) { return side.cells->pool().side_of_corner(cover.plane, corner) == 0; });
+    });
 }
 
 }  // namespace
@@ -93,10 +112,16 @@ std::vector<FacePiece> face_pieces(PlanePool& pool, const FaceSide& side) {
 
 std::vector<std::pair<int, int>> joined_parts(const FaceSide& a, const FaceSide& b,
                                               const std::function<bool(int, int)>& may_join) {
-    if (is_whole(a) && is_whole(b)) {
-        if (may_join(0, 0)) return {{0, 0}};
-        return {};
+    const std::vector<int> parts_a = parts_at(a), parts_b = parts_at(b);
+    std::vector<std::pair<int, int>> candidates;
+    for (const int part_a : parts_a) {
+        for (const int part_b : parts_b) {
+            if (may_join(part_a, part_b)) candidates.emplace_back(part_a, part_b);
+        }
     }
+    // What has all of one side shares an area with everything on the other.
+    const bool is_open = !is_covered(a) && !is_covered(b);
+    if (candidates.empty() || (is_open && (parts_a.size() == 1 || parts_b.size() == 1))) return candidates;
     PlanePool pool;
     Side of_a(pool, a), of_b(pool, b);
     std::vector<Cover> covers;
@@ -107,7 +132,7 @@ std::vector<std::pair<int, int>> joined_parts(const FaceSide& a, const FaceSide&
     for (const FacePiece& piece_a : pieces_a) {
         for (const FacePiece& piece_b : pieces_b) {
             const std::pair pair(piece_a.part, piece_b.part);
-            if (joined.contains(pair) || !may_join(pair.first, pair.second)) continue;
+            if (joined.contains(pair) || !std::ranges::binary_search(candidates, pair)) continue;
             if (are_joined(pool, piece_a.polygon, piece_b.polygon, covers)) joined.insert(pair);
         }
     }

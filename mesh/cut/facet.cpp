@@ -72,23 +72,49 @@ Facet::Box united(const Facet::Box& a, const Facet::Box& b) {
     return both;
 }
 
-bool overlap(const Facet::Box& box, const std::array<Point, 4>& corners) {
+bool are_apart(const Facet::Box& a, const Facet::Box& b) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto [lowest, highest] =
-            std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
-        if (lowest > box[1][axis] || highest < box[0][axis]) return false;
+        if (a[0][axis] > b[1][axis] || b[0][axis] > a[1][axis]) return true;
     }
-    return true;
+    return false;
 }
 
-bool may_touch(const Facet& facet, const std::array<Point, 4>& corners) {
-    if (!overlap(facet.bounds, corners)) return false;
+namespace {
+
+Facet::Box box_around(const std::array<Point, 4>& corners) {
+    Facet::Box box{corners[0], corners[0]};
+    for (const Point& corner : corners) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            box[0][axis] = std::min(box[0][axis], corner[axis]);
+            box[1][axis] = std::max(box[1][axis], corner[axis]);
+        }
+    }
+    return box;
+}
+
+bool may_touch(const Facet& facet, const std::array<Point, 4>& corners, const Facet::Box& box) {
+    if (are_apart(facet.bounds, box)) return false;
     const auto are_all = [&](const Plane& plane, int sign) {
         return std::ranges::all_of(corners, [&](const Point& corner) { return plane.quick_sign(corner) == sign; });
     };
     const int first = facet.plane.quick_sign(corners[0]);
     if (first != 0 && are_all(facet.plane, first)) return false;
     return std::ranges::none_of(facet.borders, [&](const Facet::Border& border) { return are_all(border.plane, -1); });
+}
+
+}  // namespace
+
+bool may_touch(const Facet& facet, const std::array<Point, 4>& corners) {
+    return may_touch(facet, corners, box_around(corners));
+}
+
+std::vector<const Facet*> facets_near(std::span<const Facet> facets, const std::array<Point, 4>& corners) {
+    const Facet::Box box = box_around(corners);
+    std::vector<const Facet*> near;
+    for (const Facet& facet : facets) {
+        if (may_touch(facet, corners, box)) near.push_back(&facet);
+    }
+    return near;
 }
 
 }  // namespace lancet::mesh

@@ -57,10 +57,13 @@ struct Facet {
     Box bounds;
 };
 
-/// The smallest box around two, and whether a tetrahedron's box and another have a place in common.
+/// The smallest box around two.
 Facet::Box united(const Facet::Box& a, const Facet::Box& b);
-bool overlap(const Facet::Box& box, const std::array<Point, 4>& corners);
+/// True where two boxes have no place in common.
+bool are_apart(const Facet::Box& a, const Facet::Box& b);
 /// False where the facet neither crosses the tetrahedron nor touches it. True may be wrong.
 bool may_touch(const Facet& facet, const std::array<Point, 4>& corners);
+/// All that may touch the tetrahedron, in their order.
+std::vector<const Facet*> facets_near(std::span<const Facet> facets, const std::array<Point, 4>& corners);
 
 }  // namespace lancet::mesh

@@ -26,6 +26,15 @@ PlanePool::PlanePool() {
     }
 }
 
+void PlanePool::set_error(StoredPlane& plane) {
+    for (const Bounded& value : plane.values) {
+        const double size = std::abs(value.value);
+        if (size == 0 && value.error == 0) continue;
+        const bool is_ordinary = size > 0x1p-300 && size < 0x1p+300;
+        plane.error = std::max(plane.error, is_ordinary ? value.error / size : std::numeric_limits<double>::infinity());
+    }
+}
+
 int PlanePool::number_of_frame(const std::array<Point, 4>& corners) {
     for (std::size_t frame = frames_.size(); frame > 0; --frame) {
         if (frames_[frame - 1] == corners) return static_cast<int>(frame) - 1;
@@ -62,6 +71,7 @@ int PlanePool::add_plane(const Plane& source, const std::array<Point, 4>& corner
         stored.is_precise = stored.is_precise && value.is_precise(precise);
     }
     take_vertices(stored);
+    set_error(stored);
     planes_.push_back(stored);
     return planes() - 1;
 }
@@ -69,6 +79,7 @@ int PlanePool::add_plane(const Plane& source, const std::array<Point, 4>& corner
 int PlanePool::add_values(const std::array<double, 4>& values) {
     StoredPlane stored;
     for (std::size_t k = 0; k < 4; ++k) stored.values[k] = {values[k], 0};
+    set_error(stored);
     planes_.push_back(stored);
     return planes() - 1;
 }
@@ -95,6 +106,7 @@ int PlanePool::add_trace(const PlanePool& other, int plane, const std::array<int
     });
     if (same != planes_.end()) return static_cast<int>(same - planes_.begin());
     if (trace.source != nullptr) take_vertices(trace);
+    set_error(trace);
     planes_.push_back(trace);
     return planes() - 1;
 }
@@ -172,9 +184,37 @@ int PlanePool::find_or_add_point(const std::array<int, 3>& planes) {
     return add_point(planes);
 }
 
+/// The weights of a point by one bound for all roundings of each; false where that is not enough.
+bool PlanePool::find_weights(StoredPoint& point) const {
+    const StoredPlane &p = plane(point.planes[0]), &q = plane(point.planes[1]), &r = plane(point.planes[2]);
+    // Six products of three factors each, some of them computed in other ways; a few roundings for each.
+    const double error = p.error + q.error + r.error + 0x1p-50;
+    if (!(error < precise)) return false;
+    std::array<double, 6> minors{}, sizes{};
+    constexpr std::array<std::array<std::size_t, 2>, 6> pairs{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+    for (std::size_t m = 0; m < 6; ++m) {
+        const auto [i, j] = pairs[m];
+        const double first = q.values[i].value * r.values[j].value, second = q.values[j].value * r.values[i].value;
+        minors[m] = first - second;
+        sizes[m] = std::abs(first) + std::abs(second);
+    }
+    const auto set = [&](std::size_t k, std::array<std::size_t, 3> from, std::array<std::size_t, 3> of, double sign) {
+        const double a = p.values[from[0]].value, b = p.values[from[1]].value, c = p.values[from[2]].value;
+        const double size = std::abs(a) * sizes[of[0]] + std::abs(b) * sizes[of[1]] + std::abs(c) * sizes[of[2]];
+        point.weights[k] = {sign * (a * minors[of[0]] - b * minors[of[1]] + c * minors[of[2]]), error * size};
+        return point.weights[k].is_precise(precise);
+    };
+    if (!set(0, {1, 2, 3}, {5, 4, 3}, 1) || !set(1, {0, 2, 3}, {5, 2, 1}, -1) || !set(2, {0, 1, 3}, {4, 2, 0}, 1) ||
+        !set(3, {0, 1, 2}, {3, 1, 0}, -1)) {
+        return false;
+    }
+    return true;
+}
+
 int PlanePool::add_point(const std::array<int, 3>& planes) {
     StoredPoint point{.planes = planes};
-    point.weights = cross(plane(planes[0]).values, plane(planes[1]).values, plane(planes[2]).values);
+    if (!find_weights(point))
+        point.weights = cross(plane(planes[0]).values, plane(planes[1]).values, plane(planes[2]).values);
     // The point lies in the tetrahedron: no two weights differ in sign.
     const auto are_precise = [](const auto& weights) {
         return std::ranges::all_of(weights, [](const auto& weight) { return weight.is_precise(precise); });

@@ -61,10 +61,11 @@ class PlanePool {
     template <class Number>
     using Kept = std::shared_ptr<const std::array<Number, 4>>;
     struct StoredPlane {
-        const Plane* source = nullptr;            ///< nothing where the values are exact
-        int frame = -1;                           ///< the corners at which its values were taken
-        std::array<bool, 4> is_kept{};            ///< false: the value at the corner is zero whatever the source says
-        bool is_precise = true;                   ///< all values are
+        const Plane* source = nullptr;  ///< nothing where the values are exact
+        int frame = -1;                 ///< the corners at which its values were taken
+        std::array<bool, 4> is_kept{};  ///< false: the value at the corner is zero whatever the source says
+        bool is_precise = true;         ///< all values are
+        double error = 0;  ///< the largest of a value in proportion to it; infinite where products may leave the range
         std::array<int, 3> vertices{-1, -1, -1};  ///< that lie in it, as far as they are known
         std::array<Bounded, 4> values{};
         mutable Kept<Extended> extended{};
@@ -86,6 +87,8 @@ class PlanePool {
     const StoredPlane& plane(int number) const { return planes_[static_cast<std::size_t>(number)]; }
     int number_of_frame(const std::array<Point, 4>& corners);
     void take_vertices(StoredPlane& plane);
+    static void set_error(StoredPlane& plane);
+    bool find_weights(StoredPoint& point) const;
     const std::array<Extended, 4>& extended_values(int plane) const;
     const std::array<Exact, 4>& exact_values(int plane) const;
     const std::array<Extended, 4>& extended_weights(const StoredPoint& point) const;
