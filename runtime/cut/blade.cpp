@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "lancet/kernels/error.hpp"
@@ -46,14 +48,60 @@ void require_finite(const Point& place) {
     }
 }
 
-}  // namespace
-
-std::vector<Point> rest_places(const CuttableBody& body, std::span<const Point> positions,
-                               std::span<const Point> places) {
-    const mesh::CutMesh& mesh = body.mesh();
-    std::vector<Nearest> nearest(places.size());
+/// The parts whose boxes have a place in common with a box, ascending.
+std::vector<std::int32_t> parts_near(const mesh::CutMesh& mesh, std::span<const Point> positions, const Box& box) {
+    // By node, the sides of the box beyond which it lies: a part is away where all its nodes lie beyond one of them.
+    std::vector<std::uint8_t> beyond;
+    beyond.reserve(positions.size());
+    for (const Point& place : positions) {
+        unsigned sides = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            sides |= (place[axis] < box.lower[axis] ? 1U : 0U) << (2 * axis);
+            sides |= (place[axis] > box.upper[axis] ? 2U : 0U) << (2 * axis);
+        }
+        beyond.push_back(static_cast<std::uint8_t>(sides));
+    }
+    std::vector<std::int32_t> near;
     for (std::size_t part = 0; part < mesh.parts().size(); ++part) {
-        const Corners corners = corners_of(mesh.parts()[part], positions);
+        const auto& [a, b, c, d] = mesh.parts()[part];
+        const bool is_near = (beyond[static_cast<std::size_t>(a)] & beyond[static_cast<std::size_t>(b)] &
+                              beyond[static_cast<std::size_t>(c)] & beyond[static_cast<std::size_t>(d)]) == 0;
+        if (is_near) near.push_back(static_cast<std::int32_t>(part));
+    }
+    return near;
+}
+
+/// Square of the distance from the nearest node, which some part's box is no farther away than.
+double distance_from_nodes(std::span<const Point> positions, const Point& place) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Point& node : positions) {
+        const double x = node[0] - place[0], y = node[1] - place[1], z = node[2] - place[2];
+        const double square = x * x + y * y + z * z;
+        least = square < least ? square : least;
+    }
+    return least * (1 + 0x1p-40);
+}
+
+/// The box around all that is as near to the places as what has been found.
+Box box_within_reach(std::span<const Point> places, std::span<const Nearest> nearest) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const double reach = std::sqrt(nearest[k].box_distance) * (1 + 0x1p-40);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double rounding = 0x1p-50 * std::abs(places[k][axis]);
+            box.lower[axis] = std::min(box.lower[axis], places[k][axis] - reach - rounding);
+            box.upper[axis] = std::max(box.upper[axis], places[k][axis] + reach + rounding);
+        }
+    }
+    return box;
+}
+
+/// Looks for the nearest of some parts, in their order.
+void find_nearest(const mesh::CutMesh& mesh, std::span<const Point> positions, std::span<const std::int32_t> parts,
+                  std::span<const Point> places, std::span<Nearest> nearest) {
+    for (const std::int32_t part : parts) {
+        const Corners corners = corners_of(mesh.parts()[static_cast<std::size_t>(part)], positions);
         const Box box = box_around(corners);
         for (std::size_t k = 0; k < places.size(); ++k) {
             const double distance = distance_from(box, places[k]);
@@ -63,10 +111,29 @@ std::vector<Point> rest_places(const CuttableBody& body, std::span<const Point> 
             const double lowest = *std::ranges::min_element(weights);
             if (distance == nearest[k].box_distance && lowest <= nearest[k].depth) continue;
             // What another part of the element holds is not this part's.
-            const std::int32_t element = mesh.element_of_part()[part];
-            if (lowest >= 0 && mesh.material_point(element, weights).part != static_cast<std::int32_t>(part)) continue;
-            nearest[k] = {static_cast<std::int32_t>(part), weights, distance, lowest};
+            const std::int32_t element = mesh.element_of_part()[static_cast<std::size_t>(part)];
+            if (lowest >= 0 && mesh.material_point(element, weights).part != part) continue;
+            nearest[k] = {part, weights, distance, lowest};
         }
+    }
+}
+
+}  // namespace
+
+std::vector<Point> rest_places(const CuttableBody& body, std::span<const Point> positions,
+                               std::span<const Point> places) {
+    const mesh::CutMesh& mesh = body.mesh();
+    const std::span<const Point> copies = positions.first(mesh.node_of_copy().size());
+    std::vector<Nearest> nearest(places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) nearest[k].box_distance = distance_from_nodes(copies, places[k]);
+    find_nearest(mesh, copies, parts_near(mesh, copies, box_within_reach(places, nearest)), places, nearest);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (nearest[k].part >= 0) continue;
+        // What is so near does not hold the place or has collapsed: look at all parts.
+        std::vector<std::int32_t> all(mesh.parts().size());
+        std::iota(all.begin(), all.end(), 0);
+        nearest[k] = Nearest{};
+        find_nearest(mesh, copies, all, places.subspan(k, 1), std::span(nearest).subspan(k, 1));
     }
     std::vector<Point> rest(places.begin(), places.end());
     for (std::size_t k = 0; k < places.size(); ++k) {
