@@ -25,6 +25,8 @@ constexpr const char* scalar_name() {
 
 void register_peak();
 void register_rotation();
+/// Strokes of a blade through the Bar, named cut/strokes/mesh: exact geometry in double, without an instruction set.
+void register_cut();
 
 /// Forces, assembly, products, vector passes and preconditioners, on the Bar with each of the `cells`. Returns what
 /// they are measured on, which counts failures.
