@@ -166,8 +166,7 @@ class Exact {
     }
 
   private:
-    // Kept in place up to the length that sides of points come to.
-    using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<1024>>;
+    using Integer = boost::multiprecision::cpp_int;
     Integer mantissa_ = 0;
     int exponent_ = 0;
 };

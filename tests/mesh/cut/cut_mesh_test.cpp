@@ -11,6 +11,7 @@
 
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/components.hpp"
+#include "lancet/mesh/cut/element_cells.hpp"
 #include "lancet/mesh/generate/box.hpp"
 
 namespace lancet::test {
@@ -289,6 +290,34 @@ TEST(CutMesh, ASweptBladeCutsTheSameInStepsAndAtOnce) {
         ASSERT_EQ(values.size(), others.size());
         for (auto p = values.begin(), q = others.begin(); p != values.end(); ++p, ++q) EXPECT_NEAR(*p, *q, 1e-12);
     }
+}
+
+// A stroke divides what it reaches: what earlier ones left in the same element is not divided by planes of its facets.
+TEST(CutMesh, ManyStrokesInOneElementMakeAFewCellsEach) {
+    constexpr int strokes = 40;
+    CutMesh cut = cube(1);
+    const auto sway = [](double x) { return 0.01 * std::sin(11 * x); };
+    for (int k = 0; k < strokes; ++k) {
+        const double from = 0.9 - 0.7 * k / strokes, to = 0.9 - 0.7 * (k + 1) / strokes;
+        std::vector<Point> vertices;
+        for (const double y : {from, to}) {
+            for (int i = 0; i <= 3; ++i) {
+                const double z = 0.35 + 0.1 * i;
+                vertices.push_back({0.5 + sway(z + 2 * y), y, z + sway(3 * y)});
+            }
+        }
+        std::vector<mesh::Triangle> triangles;
+        for (int i = 0; i < 3; ++i) {
+            triangles.push_back({i, i + 1, i + 5});
+            triangles.push_back({i, i + 5, i + 4});
+        }
+        EXPECT_EQ(cut.cut(CutSurface::triangulated(vertices, triangles)).new_parts, 0);
+    }
+    expect_consistent(cut);
+    EXPECT_EQ(pieces(cut).size(), 1U);
+    std::size_t cells = 0;
+    for (const std::int32_t element : cut.touched_elements()) cells += cut.cells(element)->cells();
+    EXPECT_LT(cells, 12U * 6 * strokes) << "of 6 facets a stroke";
 }
 
 // Whole planes: a part is exactly the places of its element on the same sides of all of them.

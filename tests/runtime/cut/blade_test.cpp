@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +58,51 @@ TEST(Blade, RestPlacesAreFoundInsideAndOutside) {
     ASSERT_EQ(found.size(), rest.size());
     for (std::size_t k = 0; k < rest.size(); ++k) {
         for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(found[k][axis], rest[k][axis], 1e-12);
+    }
+}
+
+// The part whose box is nearest, and of those the one that holds the place deepest, among all there are.
+TEST(Blade, RestPlacesAreThoseOfTheNearestOfAllParts) {
+    const auto scheduler = runtime::make_scheduler(runtime::SchedulerKind::serial, 1);
+    const CuttableBody body(bar(), {}, *scheduler);
+    const mesh::TetMesh& mesh = body.mesh().mesh();
+    // Bent, so that every element takes a place outside of the body elsewhere.
+    std::vector<Point> positions;
+    for (const Point& x : mesh.nodes()) {
+        positions.push_back({x[0] + 0.3 * x[1] * x[1], x[1] + 0.4 * x[0] * x[0], x[2] * (1 + 0.2 * x[0])});
+    }
+    std::mt19937 generator(5);
+    std::vector<Point> places;
+    for (int k = 0; k < 200; ++k) {
+        const double spread = k % 4 == 0 ? 10 : k % 4 == 1 ? 1 : 0.1;
+        std::uniform_real_distribution<double> uniform(-spread, spread);
+        places.push_back({0.5 + uniform(generator), 0.1 + uniform(generator), 0.1 + uniform(generator)});
+    }
+    const std::vector<Point> found = rest_places(body, positions, places);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        std::pair<double, double> best{INFINITY, INFINITY};
+        Point expected{};
+        for (const mesh::Tetrahedron& nodes : mesh.tetrahedra()) {
+            std::array<Point, 4> corners{};
+            for (std::size_t i = 0; i < 4; ++i) corners[i] = positions[static_cast<std::size_t>(nodes[i])];
+            double square = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto [low, high] =
+                    std::minmax({corners[0][axis], corners[1][axis], corners[2][axis], corners[3][axis]});
+                square += std::pow(std::max({low - places[k][axis], places[k][axis] - high, 0.0}), 2);
+            }
+            const mesh::Barycentric weights = mesh::barycentric(corners, places[k]);
+            const std::pair<double, double> here{square, -*std::ranges::min_element(weights)};
+            if (here >= best) continue;
+            best = here;
+            expected = {};
+            for (std::size_t i = 0; i < 4; ++i) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    expected[axis] += weights[i] * mesh.nodes()[static_cast<std::size_t>(nodes[i])][axis];
+                }
+            }
+        }
+        EXPECT_EQ(found[k], expected) << "place " << k;
     }
 }
 
