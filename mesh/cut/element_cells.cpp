@@ -71,7 +71,9 @@ class ElementCells::Division {
     Division(ElementCells& cells, int part, const std::array<Point, 4>& corners, bool extends)
         : cells_(cells), pool_(cells.pool_), corners_(corners), part_(part), extends_(extends) {}
 
-    bool divide(const Facet& facet) {
+    /// Takes `which` cells of those that the facet crosses: all, or where one of its outer borders ends it.
+    enum class Which { all, at_outer_borders };
+    bool divide(const Facet& facet, Which which) {
         planes_.clear();
         bool is_touched = false, is_cover = false;
         const std::size_t count = cells_.cells();
@@ -79,7 +81,7 @@ class ElementCells::Division {
             if (cells_.part_of_cell(c) != part_ || are_apart(box(c), facet.bounds)) continue;
             const auto [lowest, highest] = plane(facet).range(cells_.cell(c));
             if (lowest < 0 && highest > 0) {
-                is_touched = divide(facet, c) || is_touched;
+                is_touched = divide(facet, c, which) || is_touched;
             } else {
                 is_cover = is_cover || has_face_in(cells_.cell(c), plane(facet));
             }
@@ -94,16 +96,22 @@ class ElementCells::Division {
     }
 
   private:
+    int number_of(const Plane& plane, bool is_cut) {
+        const auto known = std::ranges::find(added_, &plane, &std::pair<const Plane*, int>::first);
+        if (known != added_.end()) return known->second;
+        added_.emplace_back(&plane, cells_.add_plane(plane, corners_, is_cut));
+        return added_.back().second;
+    }
     /// The planes of the facet, which are added to the pool where they are needed.
     PointSides& plane(const Facet& facet) {
-        if (planes_.empty()) planes_.emplace_back(pool_, cells_.add_plane(facet.plane, corners_, true));
+        if (planes_.empty()) planes_.emplace_back(pool_, number_of(facet.plane, true));
         return planes_.front();
     }
     PointSides& border(const Facet& facet, std::size_t k) {
         plane(facet);
         while (planes_.size() <= k + 1) {
             const Plane& next = facet.borders[planes_.size() - 1].plane;
-            planes_.emplace_back(pool_, cells_.add_plane(next, corners_, false));
+            planes_.emplace_back(pool_, number_of(next, false));
         }
         return planes_[k + 1];
     }
@@ -117,21 +125,21 @@ class ElementCells::Division {
     }
 
     /// Divides a cell that the plane of the facet crosses; false where the facet itself does not.
-    bool divide(const Facet& facet, std::size_t c) {
+    bool divide(const Facet& facet, std::size_t c, Which which) {
         for (std::size_t k = 0; k < facet.borders.size(); ++k) {
             if (!border(facet, k).has_above(cells_.cell(c))) return false;
         }
         const int points = pool_.points();
         Crossings crossings;
-        std::optional<Inside> inside = clipped(facet, c, crossings, false);
-        if (inside && extends_) inside = clipped(facet, c, crossings, true);
+        std::optional<Inside> inside = clipped(facet, c, crossings, which, false);
+        if (inside && extends_) inside = clipped(facet, c, crossings, Which::all, true);
         if (!inside) {
             pool_.keep_points(points);
             for (PointSides& sides : planes_) sides.keep_points(points);
             return false;
         }
         auto halves = split(pool_, inside->cell ? *inside->cell : cells_.cell(c), plane(facet), crossings);
-        cells_.replace(c, std::move(halves->first), std::move(halves->second), std::move(inside->outside));
+        cells_.replace(c, std::move(halves->first), std::move(halves->second), std::move(inside->outside), planes_);
         return true;
     }
 
@@ -142,7 +150,8 @@ class ElementCells::Division {
         std::vector<Cell> outside{};
     };
     /// Nothing where no area of the section is inside.
-    std::optional<Inside> clipped(const Facet& facet, std::size_t c, Crossings& crossings, bool only_inner) {
+    std::optional<Inside> clipped(const Facet& facet, std::size_t c, Crossings& crossings, Which which,
+                                  bool only_inner) {
         Inside inside;
         PointNumbers section = section_points(pool_, cells_.cell(c), plane(facet), crossings);
         std::vector<std::size_t> crossed;
@@ -152,6 +161,10 @@ class ElementCells::Division {
             if (highest <= 0) return std::nullopt;
             if (lowest < 0) crossed.push_back(k);
         }
+        // Behind an outer border no facet of this surface goes on: what is cut off there is not divided by the others.
+        const auto is_inner = [&](std::size_t k) { return !facet.borders[k].is_outer; };
+        std::ranges::stable_partition(crossed, [&](std::size_t k) { return !is_inner(k); });
+        if (which == Which::at_outer_borders && std::ranges::all_of(crossed, is_inner)) return std::nullopt;
         for (const std::size_t k : crossed) {
             const auto [lowest, highest] = border(facet, k).range(section);
             if (highest <= 0) return std::nullopt;
@@ -170,6 +183,7 @@ class ElementCells::Division {
     const std::array<Point, 4>& corners_;
     int part_;
     bool extends_;
+    std::vector<std::pair<const Plane*, int>> added_;  ///< with their numbers
     std::vector<PointSides> planes_;  ///< of the facet and of its borders, as far as they have been needed
 };
 
@@ -177,36 +191,56 @@ bool ElementCells::divide(int part, const Facets& facets, std::span<const Facet*
                           const std::array<Point, 4>& corners, bool extends) {
     Division division(*this, part, corners, extends);
     bool is_touched = false;
-    for (const Facet* facet : near) is_touched = division.divide(*facet) || is_touched;
+    // First what ends at outer borders: inner ones then do not go on behind these, where later strokes come.
+    constexpr std::size_t many = 4;
+    if (near.size() > many) {
+        for (const Facet* facet : near) {
+            const bool has_outer = std::ranges::any_of(facet->borders, &Facet::Border::is_outer);
+            if (!has_outer) continue;
+            is_touched = division.divide(*facet, Division::Which::at_outer_borders) || is_touched;
+        }
+    }
+    for (const Facet* facet : near) is_touched = division.divide(*facet, Division::Which::all) || is_touched;
     if (is_touched) facets_.push_back(facets);
     return is_touched;
 }
 
-void ElementCells::replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside) {
+void ElementCells::replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside,
+                           std::span<PointSides> planes) {
     const std::size_t first_new = cells_.size();
     cells_[cell] = shared(std::move(below));
     cells_.push_back(shared(std::move(above)));
     for (Cell& piece : outside) cells_.push_back(shared(std::move(piece)));
     part_of_cell_.resize(cells_.size(), part_of_cell_[cell]);
-    replace_joints(cell, first_new);
+    replace_joints(cell, first_new, planes);
 }
 
-/// The joints of a cell that has been divided are those of its pieces, and those between them.
-void ElementCells::replace_joints(std::size_t divided, std::size_t first_new) {
+void ElementCells::replace_joints(std::size_t divided, std::size_t first_new, std::span<PointSides> planes) {
     std::vector<std::size_t> pieces{divided};
     for (std::size_t c = first_new; c < cells_.size(); ++c) pieces.push_back(c);
     const auto number = static_cast<int>(divided);
+    // Of most pieces it is told by one of the planes that they have nothing of what the cell shared with another.
+    const auto is_beyond_new_edge = [&](const Cell::Face& face, const Joint& joint, bool is_below) {
+        const auto other = static_cast<std::size_t>(is_below ? joint.above : joint.below);
+        const Cell::Face* behind = face_in(cell(other), {joint.plane, is_below ? 1 : -1});
+        return std::ranges::any_of(face.edges, [&](const HalfSpace& edge) {
+            const auto found = std::ranges::find(planes, edge.plane, &PointSides::plane);
+            return found != planes.end() &&
+                   std::ranges::none_of(behind->points, [&](int point) { return edge.side * found->of(point) > 0; });
+        });
+    };
     std::vector<Joint> further;
     std::erase_if(joints_, [&](const Joint& joint) {
         if (joint.below != number && joint.above != number) return false;
         const bool is_below = joint.below == number;
         const std::size_t first = further.size();
         for (const std::size_t piece : pieces) {
-            if (face_in(cell(piece), {joint.plane, is_below ? -1 : 1}) == nullptr) continue;
+            const Cell::Face* face = face_in(cell(piece), {joint.plane, is_below ? -1 : 1});
+            if (face == nullptr || is_beyond_new_edge(*face, joint, is_below)) continue;
             Joint& added = further.emplace_back(joint);
             (is_below ? added.below : added.above) = static_cast<int>(piece);
         }
-        // A face that one piece has alone is as it was.
+        // What only one piece can have had is there as it was.
         const bool is_shared = further.size() > first + 1;
         for (std::size_t k = first; is_shared && k < further.size(); ++k) further[k].is_known = false;
         return true;
@@ -239,13 +273,20 @@ std::vector<int> ElementCells::regroup() {
         while (group[cell] != cell) cell = group[cell] = group[group[cell]];
         return cell;
     };
-    // What does not share an area never will.
-    std::erase_if(joints_, [&](const Joint& joint) { return !joint.is_known && !share_area(joint); });
-    for (Joint& joint : joints_) {
-        joint.is_known = true;
-        const int a = find(joint.below), b = find(joint.above);
-        group[std::max(a, b)] = std::min(a, b);
+    const auto unite = [&](int a, int b) { group[std::max(a, b)] = std::min(a, b); };
+    for (const Joint& joint : joints_) {
+        if (joint.is_known) unite(find(joint.below), find(joint.above));
     }
+    // What hangs together anyhow need not be looked at until it does not any more; what shares no area never will.
+    std::erase_if(joints_, [&](Joint& joint) {
+        if (joint.is_known) return false;
+        const int a = find(joint.below), b = find(joint.above);
+        if (a == b) return false;
+        if (!share_area(joint)) return true;
+        joint.is_known = true;
+        unite(a, b);
+        return false;
+    });
     std::vector<std::pair<int, int>> order;  // {part before, first cell}
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (find(static_cast<int>(c)) == static_cast<int>(c)) order.emplace_back(part_of_cell_[c], c);

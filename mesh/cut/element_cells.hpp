@@ -84,8 +84,9 @@ class ElementCells {
     class Division;
     int add_plane(const Plane& plane, const std::array<Point, 4>& corners, bool is_cut);
     std::shared_ptr<SharedCell> shared(Cell&& cell) const;
-    void replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside);
-    void replace_joints(std::size_t cell, std::size_t first_new);
+    void replace(std::size_t cell, Cell&& below, Cell&& above, std::vector<Cell>&& outside,
+                 std::span<PointSides> planes);
+    void replace_joints(std::size_t cell, std::size_t first_new, std::span<PointSides> planes);
     bool share_area(const Joint& joint);
 
     PlanePool pool_;
