@@ -34,7 +34,7 @@ void unite(std::vector<std::int32_t>& group, std::int32_t a, std::int32_t b) {
 
 void sort_unique(std::vector<std::int32_t>& numbers) {
     std::ranges::sort(numbers);
-    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 /// The sides of a box beyond which a place lies: a tetrahedron's box and this one have no place in common where all its

@@ -49,7 +49,8 @@ ElementCells::ElementCells() : plane_is_cut_(4, false), part_of_cell_{0} {
 }
 
 std::shared_ptr<SharedCell> ElementCells::shared(Cell&& cell) const {
-    const auto shared = std::make_shared<SharedCell>(std::move(cell));
+    auto shared = std::make_shared<SharedCell>();
+    shared->shape = std::move(cell);
     for (const Cell::Face& face : shared->shape.faces) {
         for (const int point : face.points) {
             for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -163,7 +164,7 @@ class ElementCells::Division {
         }
         // Behind an outer border no facet of this surface goes on: what is cut off there is not divided by the others.
         const auto is_inner = [&](std::size_t k) { return !facet.borders[k].is_outer; };
-        std::ranges::stable_partition(crossed, [&](std::size_t k) { return !is_inner(k); });
+        std::stable_partition(crossed.begin(), crossed.end(), [&](std::size_t k) { return !is_inner(k); });
         if (which == Which::at_outer_borders && std::ranges::all_of(crossed, is_inner)) return std::nullopt;
         for (const std::size_t k : crossed) {
             const auto [lowest, highest] = border(facet, k).range(section);
