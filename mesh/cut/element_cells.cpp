@@ -84,7 +84,7 @@ class ElementCells::Division {
             if (lowest < 0 && highest > 0) {
                 is_touched = divide(facet, c, which) || is_touched;
             } else {
-                is_cover = is_cover || has_face_in(cells_.cell(c), plane(facet));
+                is_cover = is_cover || (which == Which::all && has_face_in(cells_.cell(c), plane(facet)));
             }
         }
         if (is_cover) {
@@ -303,16 +303,21 @@ std::vector<int> ElementCells::regroup() {
     return before;
 }
 
+const PartMoments& ElementCells::moments_of_cell(std::size_t cell) const {
+    SharedCell& shared = *cells_[cell];
+    if (!shared.moments) {
+        shared.moments = empty_moments();
+        add_cell(*shared.moments, pool_, shared.shape);
+    }
+    return *shared.moments;
+}
+
 PartMoments ElementCells::moments(int part) const {
     if (parts_ == 1) return {};
     PartMoments moments = empty_moments();
     for (std::size_t c = 0; c < cells_.size(); ++c) {
         if (part_of_cell_[c] != part) continue;
-        if (!cells_[c]->moments) {
-            cells_[c]->moments = empty_moments();
-            add_cell(*cells_[c]->moments, pool_, cell(c));
-        }
-        add_weighted(moments, *cells_[c]->moments, 1);
+        add_weighted(moments, moments_of_cell(c), 1);
     }
     return moments;
 }
@@ -362,7 +367,7 @@ ElementCells::Halves ElementCells::halves(int part, int plane) const {
             continue;
         }
         const bool is_above = PointSides(pool, plane).has_above(cell(c));
-        add_cell(is_above ? halves.above : halves.below, pool, cell(c));
+        add_weighted(is_above ? halves.above : halves.below, moments_of_cell(c), 1);
     }
     return halves;
 }

@@ -88,6 +88,7 @@ class ElementCells {
                  std::span<PointSides> planes);
     void replace_joints(std::size_t cell, std::size_t first_new, std::span<PointSides> planes);
     bool share_area(const Joint& joint);
+    const PartMoments& moments_of_cell(std::size_t cell) const;
 
     PlanePool pool_;
     std::vector<bool> plane_is_cut_;
