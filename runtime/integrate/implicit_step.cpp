@@ -329,11 +329,22 @@ bool ImplicitStep<Real, Accumulate>::descend(Scheduler& scheduler, BodyMotion& m
 
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter,
-                                               double share) {
+                                               double share, bool keeps_momentum) {
+    std::array<double, 4> kept{};
+    const bool is_held = numbering_->free_count < numbering_->node_count || !filter.empty();
+    for (std::size_t axis = 0; axis < 3 && !is_held && keeps_momentum; ++axis) {
+        const auto mass = [&](std::size_t node, std::size_t) { return inertia_.row_sums[node]; };
+        const auto momentum = [&](std::size_t node, std::size_t at) {
+            return inertia_.row_sums[node] * motion.velocity[at + axis];
+        };
+        kept[axis] = (1 - share) * sum_over_nodes(scheduler, momentum) / sum_over_nodes(scheduler, mass);
+    }
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         const std::size_t begin = 4 * static_cast<std::size_t>(numbering_->block_begin[block]);
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
-        for (std::size_t i = begin; i < end; ++i) motion.velocity[i] = share * motion.velocity[i] - start_velocity_[i];
+        for (std::size_t i = begin; i < end; ++i) {
+            motion.velocity[i] = share * motion.velocity[i] + kept[i % 4] - start_velocity_[i];
+        }
         filter.apply(motion.velocity.data(), block);
         for (std::size_t i = begin; i < end; ++i) motion.velocity[i] += start_velocity_[i];
     });
@@ -345,11 +356,9 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
                                                StepReport& report, StepTotals& totals) {
     Timer timer;
     const typename StepEnergy<Real>::Inner before = inner_energy_;
-    double growth = 0;
     const auto gains = [&] {
         inner_energy_ = before;
-        growth = energy_.growth(scheduler, step_under(loads), motion, before_hold, inner_energy_);
-        return growth > 0;
+        return energy_.growth(scheduler, step_under(loads), motion, before_hold, inner_energy_) > 0;
     };
     bool gained = gains();
     timer.add_to(totals.seconds_forces);
@@ -378,17 +387,20 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
         timer.add_to(totals.seconds_forces);
     }
     // The iterations may end before they have brought the energy down. A slower motion from the same start has less of
-    // it, and in the limit of none what the body had at the start. But a slow drift is not to be ended for the noise of
-    // forces that are rounded.
+    // it, and in the limit of none, or that of a body that nothing holds as a whole, what the body had at the start and
+    // the loads have put in.
     constexpr int attempts = 24;  // 0.75^24 is 1e-3
-    const double noise = energy_.noise(motion.position, before);
-    const bool is_noise = std::isfinite(noise) && growth <= noise;
-    if (gained && !is_noise && is_finite(scheduler, motion)) {
-        for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
-            slow_down(scheduler, motion, filter, attempt < attempts ? 0.75 : 0.0);
+    if (gained && is_finite(scheduler, motion)) {
+        const auto slow_down_by = [&](double share, bool keeps_momentum) {
+            slow_down(scheduler, motion, filter, share, keeps_momentum);
             move(scheduler, motion, h, motion.velocity);
             gained = gains();
+        };
+        for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
+            slow_down_by(attempt < attempts ? 0.75 : 0.0, true);
         }
+        // Beyond the numbers of the scalar there is nothing to be kept.
+        if (gained && !std::isfinite(inner_energy_.sum())) slow_down_by(0, false);
         timer.add_to(totals.seconds_forces);
     }
     move(scheduler, motion, h, motion.velocity);

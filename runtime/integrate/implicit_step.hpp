@@ -124,8 +124,10 @@ class ImplicitStep final : public StepMethod<Real> {
     bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
     void move(Scheduler& scheduler, BodyMotion& motion, double factor, std::span<const double> velocity);
-    /// Scales the velocities by `share` where no hold prescribes them.
-    void slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter, double share);
+    /// Scales the velocities by `share` where no hold prescribes them. `keeps_momentum`: where nothing at all is held,
+    /// against the mean velocity.
+    void slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter, double share,
+                   bool keeps_momentum);
     /// held_impulse_ = -(g / h) M (v - v_before): what the change of velocity of held nodes does to their neighbours.
     void find_held_impulse(Scheduler& scheduler, const BodyMotion& motion, std::span<const double> before_hold);
     bool is_finite(Scheduler& scheduler, const BodyMotion& motion);

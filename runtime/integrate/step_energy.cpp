@@ -1,6 +1,5 @@
 #include "lancet/runtime/integrate/step_energy.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,56 +7,9 @@
 
 namespace lancet::runtime {
 
-namespace {
-
-/// F is a sum of edges times gradients b, off by some eps of Real, and by some eps of double times |x| |b|. So strains
-/// that are nothing but rounding have the energy `of_edges` + |x|^2 `of_places`, with (mu + 3/2 lambda) V |dF|^2 for
-/// each element. Parts of elements add up to them.
-struct RoundedStrains {
-    double of_edges = 0, of_places = 0;
-};
-
-template <class Real>
-RoundedStrains rounded_strains(const kernels::ElementBatches<Real>& batches) {
-    constexpr double edges = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    constexpr double places = 8 * std::numeric_limits<double>::epsilon();
-    const auto width = static_cast<std::size_t>(batches.width);
-    RoundedStrains sum;
-    for (std::size_t batch = 0; batch < static_cast<std::size_t>(batches.batches()); ++batch) {
-        const Real* rest = &batches.rest[batch * kernels::ElementBatches<Real>::rest_entries * width];
-        for (std::size_t lane = 0; lane < width; ++lane) {
-            const auto entry = [&](std::size_t k) { return static_cast<double>(rest[k * width + lane]); };
-            const double stiffness = entry(9) * entry(9) * (1 + 1.5 * std::abs(entry(10)));
-            double gradients = 0;
-            for (std::size_t k = 0; k < 9; ++k) gradients += entry(k) * entry(k);
-            sum.of_edges += stiffness * edges * edges;
-            sum.of_places += stiffness * gradients * places * places;
-        }
-    }
-    return sum;
-}
-
-}  // namespace
-
 template <class Real>
 StepEnergy<Real>::StepEnergy(ElasticElements<Real>& elements, const Inertia& inertia)
-    : elements_(&elements), inertia_(&inertia), partial_(static_cast<std::size_t>(elements.numbering().blocks())) {
-    const RoundedStrains strains = rounded_strains(elements.batches());
-    rounded_edges_ = strains.of_edges;
-    rounded_places_ = strains.of_places;
-}
-
-template <class Real>
-double StepEnergy<Real>::rounded_strains_at(std::span<const double> position) const {
-    double square = 0;
-    for (const std::int32_t node : elements_->numbering().block_begin) {
-        const auto at = 4 * static_cast<std::size_t>(node);
-        if (at + 2 >= position.size()) continue;
-        square = std::max(square, position[at] * position[at] + position[at + 1] * position[at + 1] +
-                                      position[at + 2] * position[at + 2]);
-    }
-    return rounded_edges_ + square * rounded_places_;
-}
+    : elements_(&elements), inertia_(&inertia), partial_(static_cast<std::size_t>(elements.numbering().blocks())) {}
 
 template <class Real>
 template <class Function>
@@ -140,19 +92,12 @@ double StepEnergy<Real>::growth(Scheduler& scheduler, const Step& step, const Bo
         }
         return sum;
     });
-    // Rounding of the energies: a sum of positive terms in Real, of strains that are rounded themselves. Without the
-    // latter a body that drifts slowly and has no strain would be slowed down for having some.
+    // Rounding of the energies: a sum of positive terms in Real.
     const double rounding =
-        64 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * (energy.sum() + after.sum()) +
-        rounded_strains_at(motion.position);
+        64 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * (energy.sum() + after.sum());
     const double excess = after.sum() - energy.sum() - work - rounding;
     energy = after;
     return std::isfinite(energy.sum()) ? excess : HUGE_VAL;
-}
-
-template <class Real>
-double StepEnergy<Real>::noise(std::span<const double> position, const Inner& energy) const {
-    return 2 * std::sqrt(rounded_strains_at(position) * std::max(energy.sum(), 0.0));
 }
 
 template class StepEnergy<float>;

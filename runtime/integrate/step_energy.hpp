@@ -47,16 +47,9 @@ class StepEnergy {
     double growth(Scheduler& scheduler, const Step& step, const BodyMotion& motion, std::span<const double> before_hold,
                   Inner& energy);
 
-    /// By how much rounded strains can change the energy in a step, in joules. Their own energy is E_r, and so at most
-    /// is that of the velocities that their forces make: 2 sqrt(E E_r) together with those that there are.
-    double noise(std::span<const double> position, const Inner& energy) const;
-
     std::size_t bytes() const noexcept { return kernels::heap_bytes(partial_); }
 
   private:
-    /// The energy of strains that are nothing but rounding, in joules. How far the body is from the origin is taken
-    /// from a node of each block.
-    double rounded_strains_at(std::span<const double> position) const;
     bool is_linear() const noexcept { return elements_->law().model == ElementModel::linear; }
     template <class Function>
     double sum_over_nodes(Scheduler& scheduler, const Function& value);
@@ -64,8 +57,6 @@ class StepEnergy {
     ElasticElements<Real>* elements_;
     const Inertia* inertia_;
     std::vector<double> partial_;
-    double rounded_edges_ = 0;   ///< joules; cuts do not change it
-    double rounded_places_ = 0;  ///< joules per square metre, likewise
 };
 
 }  // namespace lancet::runtime

@@ -148,7 +148,8 @@ TEST_P(Safeguard, StatesBeyondTheScalarAreReportedAndLeftFinite) {
     }
 }
 
-// Its kinetic energy is less than that of strains that rounding makes.
+// Its kinetic energy is less than that of strains that rounding makes, so that it seems to gain some. It keeps its
+// momentum all the same, up to rounding of a hundred steps.
 TEST_P(Safeguard, LeavesABodyAloneThatDriftsSlowly) {
     for (const double speed : {1e-2, 1e-4, 1e-6}) {
         SCOPED_TRACE(speed);
