@@ -328,22 +328,31 @@ bool ImplicitStep<Real, Accumulate>::descend(Scheduler& scheduler, BodyMotion& m
 }
 
 template <class Real, class Accumulate>
-void ImplicitStep<Real, Accumulate>::slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter,
-                                               double share, bool keeps_momentum) {
-    std::array<double, 4> kept{};
-    const bool is_held = numbering_->free_count < numbering_->node_count || !filter.empty();
-    for (std::size_t axis = 0; axis < 3 && !is_held && keeps_momentum; ++axis) {
-        const auto mass = [&](std::size_t node, std::size_t) { return inertia_.row_sums[node]; };
-        const auto momentum = [&](std::size_t node, std::size_t at) {
-            return inertia_.row_sums[node] * motion.velocity[at + axis];
-        };
-        kept[axis] = (1 - share) * sum_over_nodes(scheduler, momentum) / sum_over_nodes(scheduler, mass);
+std::array<double, 4> ImplicitStep<Real, Accumulate>::free_velocity(Scheduler& scheduler, const BodyLoads& loads,
+                                                                    const ConstraintFilter& filter) {
+    std::array<double, 4> mean{};
+    if (numbering_->free_count < numbering_->node_count || !filter.empty()) return mean;
+    const double g = momentum_length();
+    const double mass =
+        sum_over_nodes(scheduler, [&](std::size_t node, std::size_t) { return inertia_.row_sums[node]; });
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double momentum = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
+            return inertia_.row_sums[node] * (start_velocity_[at + axis] + g * loads.gravity[axis]) +
+                   g * loads.nodal[at + axis];
+        });
+        mean[axis] = momentum / (mass * (1 + g * loads.rayleigh_mass));
     }
+    return mean;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter,
+                                               double share, const std::array<double, 4>& limit) {
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
         const std::size_t begin = 4 * static_cast<std::size_t>(numbering_->block_begin[block]);
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = begin; i < end; ++i) {
-            motion.velocity[i] = share * motion.velocity[i] + kept[i % 4] - start_velocity_[i];
+            motion.velocity[i] = share * motion.velocity[i] + (1 - share) * limit[i % 4] - start_velocity_[i];
         }
         filter.apply(motion.velocity.data(), block);
         for (std::size_t i = begin; i < end; ++i) motion.velocity[i] += start_velocity_[i];
@@ -387,20 +396,21 @@ void ImplicitStep<Real, Accumulate>::safeguard(Scheduler& scheduler, BodyMotion&
         timer.add_to(totals.seconds_forces);
     }
     // The iterations may end before they have brought the energy down. A slower motion from the same start has less of
-    // it, and in the limit of none, or that of a body that nothing holds as a whole, what the body had at the start and
-    // the loads have put in.
+    // it, and in the limit of none what the body had at the start. What nothing holds is slowed down to the velocity
+    // that its momentum asks for.
     constexpr int attempts = 24;  // 0.75^24 is 1e-3
     if (gained && is_finite(scheduler, motion)) {
-        const auto slow_down_by = [&](double share, bool keeps_momentum) {
-            slow_down(scheduler, motion, filter, share, keeps_momentum);
+        const auto slow_down_to = [&](double share, const std::array<double, 4>& limit) {
+            slow_down(scheduler, motion, filter, share, limit);
             move(scheduler, motion, h, motion.velocity);
             gained = gains();
         };
+        const std::array<double, 4> free = free_velocity(scheduler, loads, filter);
         for (int attempt = 0; attempt <= attempts && gained; ++attempt) {
-            slow_down_by(attempt < attempts ? 0.75 : 0.0, true);
+            slow_down_to(attempt < attempts ? 0.75 : 0.0, free);
         }
         // Beyond the numbers of the scalar there is nothing to be kept.
-        if (gained && !std::isfinite(inner_energy_.sum())) slow_down_by(0, false);
+        if (gained && !std::isfinite(inner_energy_.sum())) slow_down_to(0, {});
         timer.add_to(totals.seconds_forces);
     }
     move(scheduler, motion, h, motion.velocity);

@@ -124,10 +124,12 @@ class ImplicitStep final : public StepMethod<Real> {
     bool descend(Scheduler& scheduler, BodyMotion& motion, const BodyLoads& loads, double& potential, double rounding);
     /// motion.position = start + factor * velocity on all nodes.
     void move(Scheduler& scheduler, BodyMotion& motion, double factor, std::span<const double> velocity);
-    /// Scales the velocities by `share` where no hold prescribes them. `keeps_momentum`: where nothing at all is held,
-    /// against the mean velocity.
+    /// The mean velocity at the end of a step of implicit Euler of a body that nothing holds, from its momentum; zero
+    /// for one that something holds.
+    std::array<double, 4> free_velocity(Scheduler& scheduler, const BodyLoads& loads, const ConstraintFilter& filter);
+    /// v = share v + (1 - share) limit where no hold prescribes it.
     void slow_down(Scheduler& scheduler, BodyMotion& motion, const ConstraintFilter& filter, double share,
-                   bool keeps_momentum);
+                   const std::array<double, 4>& limit);
     /// held_impulse_ = -(g / h) M (v - v_before): what the change of velocity of held nodes does to their neighbours.
     void find_held_impulse(Scheduler& scheduler, const BodyMotion& motion, std::span<const double> before_hold);
     bool is_finite(Scheduler& scheduler, const BodyMotion& motion);
