@@ -73,7 +73,7 @@ TEST(StabilityProgram, CountsEveryCategoryAndNamesEveryFailure) {
     }
     int rows = 0;
     for (const auto& row : json.at("rows")) rows += row.at("run").get<int>();
-    EXPECT_EQ(rows, 24);
+    EXPECT_EQ(rows, 27);
 }
 
 TEST(StabilityProgram, GivesTheSameOutcomesHoweverManyProcesses) {
