@@ -155,7 +155,6 @@ std::array<Point, 4> CutMesh::corners_of(std::int32_t part, std::span<const Poin
 
 void CutMesh::divide(std::int32_t element, const CutSurface& surface, FrontTreatment front,
                      std::span<const Point> positions, Change& change) {
-    static const ElementCells whole;
     const std::span<const std::int32_t> own_parts = parts_in(element);
     std::vector<std::array<Point, 4>> corners;
     std::vector<std::vector<const Facet*>> near;
@@ -169,7 +168,8 @@ void CutMesh::divide(std::int32_t element, const CutSurface& surface, FrontTreat
     }
     if (!is_near) return;
     const CutElement* known = cut_element(element);
-    ElementCells cells = known == nullptr ? whole : *known->cells;
+    // Not a copy of one that is kept: cells are shared with what they are for, and other bodies may be cut meanwhile.
+    ElementCells cells = known == nullptr ? ElementCells() : *known->cells;
     const std::vector<std::int32_t> old_parts(own_parts.begin(), own_parts.end());
     const std::size_t old_covers = cells.covers().size();
     bool is_touched = false;
