@@ -8,7 +8,7 @@ namespace lancet::runtime {
 namespace {
 
 /// A pause takes some 10 to 40 ns.
-constexpr int looks_for_a_round = 4000;  // about a hundred microseconds
+constexpr int looks_for_a_round = 12000;  // some hundred microseconds
 constexpr int looks_at_ready_tasks = 100;
 constexpr int looks_before_yield = 2000;
 
@@ -62,12 +62,16 @@ void LoopCrew::run(ChunkedLoop& loop, FunctionReference<void()> call) {
     }
 }
 
-bool LoopCrew::await_round(std::uint64_t seen, unsigned departures) const noexcept {
+void LoopCrew::expect_home() noexcept {
+    expected_.store(this_thread(), std::memory_order_relaxed);
+}
+
+bool LoopCrew::await_round(std::uint64_t seen, bool is_expected) const noexcept {
     int looks_with_ready_tasks = 0;
     for (int look = 0; look < looks_for_a_round; ++look) {
         if (round_.load(std::memory_order_acquire) != seen) return true;
         if (is_dismissed_.load(std::memory_order_relaxed)) return false;
-        if (departures_.load(std::memory_order_relaxed) != departures) return false;
+        if (is_expected && expected_.load(std::memory_order_relaxed) == nullptr) return false;
         // A task that the thread before it goes on with is ready for a moment only.
         looks_with_ready_tasks = ready_.load(std::memory_order_relaxed) > 0 ? looks_with_ready_tasks + 1 : 0;
         if (looks_with_ready_tasks > looks_at_ready_tasks) return false;
@@ -82,13 +86,13 @@ void LoopCrew::serve() noexcept {
         while (seat < threads_ && seats_[static_cast<std::size_t>(seat)].exchange(true, std::memory_order_acquire)) {
             ++seat;
         }
-        const unsigned departures = departures_.load(std::memory_order_relaxed);
+        const bool is_expected = expected_.load(std::memory_order_relaxed) == this_thread();
         std::uint64_t seen = 0;
         do {
             seen = round_.load(std::memory_order_acquire);
             const int count = run_chunks(seat % threads_, seen);
             if (count > 0) helped_.fetch_add(count, std::memory_order_release);
-        } while (await_round(seen, departures));
+        } while (await_round(seen, is_expected));
         if (seat < threads_) seats_[static_cast<std::size_t>(seat)].store(false, std::memory_order_release);
     }
     helpers_.fetch_sub(1, std::memory_order_relaxed);

@@ -46,8 +46,11 @@ class LoopCrew {
     /// A task is ready to run (1), or begins (-1): while some are ready for more than a moment, helpers leave.
     void count_ready(int change) noexcept { ready_.fetch_add(change, std::memory_order_relaxed); }
 
-    /// The helpers that are there leave: nothing comes for a while, and somebody may wait for their threads.
-    void send_home() noexcept { departures_.fetch_add(1, std::memory_order_relaxed); }
+    /// The calling thread waits for tasks, and may be made a helper while it does: until they have ended (send_home).
+    void expect_home() noexcept;
+    /// The thread that called expect_home leaves, if it is a helper. Others stay: the next tasks may come soon, and a
+    /// thread that has gone to sleep takes a hundred microseconds to come back.
+    void send_home() noexcept { expected_.store(nullptr, std::memory_order_relaxed); }
 
     /// Helpers leave, and nobody stays from now on. Those that were called and have not served yet must still do so.
     void dismiss() noexcept { is_dismissed_.store(true, std::memory_order_relaxed); }
@@ -60,15 +63,15 @@ class LoopCrew {
     bool begin(int chunk, std::uint64_t round) noexcept;
     /// Runs chunks that nobody has begun, first the one with the number `first`; returns how many.
     int run_chunks(int first, std::uint64_t round) noexcept;
-    bool await_round(std::uint64_t seen, unsigned departures) const noexcept;
+    bool await_round(std::uint64_t seen, bool is_expected) const noexcept;
 
     int threads_;
     std::atomic<bool> is_taken_{false}, is_dismissed_{false};
     std::atomic<int> ready_{0};
-    std::atomic<unsigned> departures_{0};
-    std::atomic<const void*> runner_{nullptr};  ///< a mark of the thread that ran the last loop
-    std::atomic<int> helpers_{0};               ///< called, and not gone
-    std::vector<std::atomic<bool>> seats_;      ///< a helper keeps to one chunk, whose data its core has
+    std::atomic<const void*> expected_{nullptr};  ///< a mark of the thread that waits for tasks
+    std::atomic<const void*> runner_{nullptr};    ///< a mark of the thread that ran the last loop
+    std::atomic<int> helpers_{0};                 ///< called, and not gone
+    std::vector<std::atomic<bool>> seats_;        ///< a helper keeps to one chunk, whose data its core has
     std::vector<Chunk> chunks_;
     ChunkedLoop* loop_ = nullptr;  ///< published by round_
     alignas(64) std::atomic<std::uint64_t> round_{0};

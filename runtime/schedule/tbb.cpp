@@ -52,6 +52,7 @@ class TbbExecution final : public GraphExecution {
             if (topology().predecessors(task) == 0) crew_.count_ready(1);
         }
         left_.store(topology().size(), std::memory_order_relaxed);
+        crew_.expect_home();
         arena_.execute([this] {
             start_->try_put(Message());
             graph_->wait_for_all();
