@@ -47,9 +47,9 @@ struct StepTotals {
     std::int64_t coarse_refreshes = 0;
     std::int64_t coarse_failures = 0;
     std::int64_t kept_rotations = 0;  ///< blocks of elements whose rotations stayed, see Settings::rotation_bound
-    double seconds_forces = 0;  ///< rotations, forces, assembly, energies
-    double seconds_solve = 0;   ///< preconditioner and conjugate gradients
-    double seconds_rest = 0;    ///< right-hand side and state update
+    double seconds_forces = 0;        ///< rotations, forces, assembly, energies
+    double seconds_solve = 0;         ///< preconditioner and conjugate gradients
+    double seconds_rest = 0;          ///< right-hand side and state update
 };
 
 /// Energies in joules.
