@@ -65,7 +65,9 @@ class LoopCrew {
     int run_chunks(int first, std::uint64_t round) noexcept;
     bool await_round(std::uint64_t seen, bool is_expected) const noexcept;
 
-    int threads_;
+    alignas(64) std::atomic<std::uint64_t> round_{0};  ///< raised to start a loop; apart from what others write
+    alignas(64) std::atomic<int> helped_{0};           ///< chunks that helpers have ended
+    alignas(64) int threads_;
     std::atomic<bool> is_taken_{false}, is_dismissed_{false};
     std::atomic<int> ready_{0};
     std::atomic<const void*> expected_{nullptr};  ///< a mark of the thread that waits for tasks
@@ -74,8 +76,6 @@ class LoopCrew {
     std::vector<std::atomic<bool>> seats_;        ///< a helper keeps to one chunk, whose data its core has
     std::vector<Chunk> chunks_;
     ChunkedLoop* loop_ = nullptr;  ///< published by round_
-    alignas(64) std::atomic<std::uint64_t> round_{0};
-    alignas(64) std::atomic<int> helped_{0};  ///< chunks that helpers have ended
 };
 
 }  // namespace lancet::runtime

@@ -117,7 +117,7 @@ class Tbb final : public Scheduler {
         arena_.execute([this] { calls_.emplace(); });
     }
 
-    ~Tbb() override {
+    ~Tbb() noexcept override {
         crew_.dismiss();
         arena_.execute([this] { calls_->wait(); });
     }

@@ -40,7 +40,7 @@ void DeformationWatch::change(const kernels::ElementBatches<Real>& batches, cons
         }
     }
     std::ranges::sort(of.nodes);
-    of.nodes.erase(std::ranges::unique(of.nodes).begin(), of.nodes.end());
+    of.nodes.erase(std::unique(of.nodes.begin(), of.nodes.end()), of.nodes.end());
     of.places.resize(3 * of.nodes.size());
     for (const std::int32_t node : of.nodes) {
         if (!numbering.is_free(node)) break;  // and neither are those behind it
