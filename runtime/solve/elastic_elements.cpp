@@ -135,11 +135,11 @@ bool ElasticElements<Real>::change(std::int32_t& slot, const kernels::ChangedEle
 template <class Real>
 void ElasticElements<Real>::finish_changes(const double* rest_positions) {
     batches_.scatter.finish_changes();
+    std::sort(changed_blocks_.begin(), changed_blocks_.end());
+    changed_blocks_.erase(std::unique(changed_blocks_.begin(), changed_blocks_.end()), changed_blocks_.end());
     if (watch_) {
         for (const int block : changed_blocks_) watch_->change(batches_, *numbering_, block);
     }
-    std::sort(changed_blocks_.begin(), changed_blocks_.end());
-    changed_blocks_.erase(std::unique(changed_blocks_.begin(), changed_blocks_.end()), changed_blocks_.end());
     if (law_.model == ElementModel::linear) {
         const auto at_rest = arguments_at_rest(rest_positions);
         for (const int block : changed_blocks_) kernels_->tetrahedron.elastic(at_rest, block);

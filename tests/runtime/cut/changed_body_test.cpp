@@ -119,6 +119,10 @@ std::vector<Case> cases() {
     Case exact = implicit("exact_tangent", OperatorKind::edge_blocks, ScalarMode::double_precision, MassKind::lumped);
     exact.settings.tangent = runtime::TangentKind::projected;
     all.push_back(exact);
+    Case watched =
+        implicit("rotation_bound", OperatorKind::edge_blocks, ScalarMode::double_precision, MassKind::lumped);
+    watched.settings.rotation_bound = 1e-10;  // far below the tolerance of positions
+    all.push_back(watched);
     Case newmark = implicit("newmark", OperatorKind::edge_blocks, ScalarMode::double_precision, MassKind::lumped);
     newmark.settings.integrator = runtime::Integrator::newmark;
     newmark.settings.energy_safeguard = false;
