@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -20,6 +21,16 @@ double sum_over_nodes(Scheduler& scheduler, const kernels::NodeNumbering& number
         }
         return sum;
     });
+}
+
+/// Whether the positions and velocities (xyz_) of all free nodes are finite.
+inline bool is_finite(Scheduler& scheduler, const kernels::NodeNumbering& numbering, std::span<double> partial,
+                      std::span<const double> position, std::span<const double> velocity) {
+    return std::isfinite(sum_over_nodes(scheduler, numbering, partial, [&](std::size_t, std::size_t at) {
+        double sum = 0;
+        for (std::size_t i = at; i < at + 3; ++i) sum += std::abs(position[i]) + std::abs(velocity[i]);
+        return sum;
+    }));
 }
 
 /// The potential energy of weight in joules, zero at `rest`. Positions are xyz_ nodal vectors, `mass` is [node].

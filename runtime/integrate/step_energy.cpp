@@ -36,21 +36,21 @@ double StepEnergy<Real>::elastic(Scheduler& scheduler, const double* position) {
 }
 
 template <class Real>
-double StepEnergy<Real>::incremental_potential(Scheduler& scheduler, const Step& step, std::span<const double> position,
-                                               std::span<const double> velocity) {
-    const double g = step.momentum_length, c = step.position_length;
-    const BodyLoads& loads = *step.loads;
+double StepEnergy<Real>::incremental_potential(Scheduler& scheduler, const StepEquations& step, const BodyLoads& loads,
+                                               std::span<const double> position, std::span<const double> velocity) {
+    const double g = step.momentum_length(), c = step.position_length();
+    const std::span<const double> start = step.velocity(), held_impulse = step.impulse();
     const double elastic_energy = elastic(scheduler, position.data());
     return g / c * elastic_energy + sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
                double sum = 0;
                for (std::size_t axis = 0; axis < 3; ++axis) {
-                   const double v = velocity[at + axis], change = v - step.velocity[at + axis];
+                   const double v = velocity[at + axis], change = v - start[at + axis];
                    const double load = inertia_->row_sums[node] * loads.gravity[axis] + loads.nodal[at + axis];
-                   const double impulse = g * load + (step.impulse.empty() ? 0.0 : step.impulse[at + axis]);
+                   const double impulse = g * load + (held_impulse.empty() ? 0.0 : held_impulse[at + axis]);
                    const double momentum =
                        inertia_->momentum(node, [&](std::size_t j) { return velocity[4 * j + axis]; });
                    const double gained = inertia_->momentum(
-                       node, [&](std::size_t j) { return velocity[4 * j + axis] - step.velocity[4 * j + axis]; });
+                       node, [&](std::size_t j) { return velocity[4 * j + axis] - start[4 * j + axis]; });
                    sum += 0.5 * (change * gained + g * loads.rayleigh_mass * v * momentum) - impulse * v;
                }
                return sum;
@@ -58,10 +58,10 @@ double StepEnergy<Real>::incremental_potential(Scheduler& scheduler, const Step&
 }
 
 template <class Real>
-double StepEnergy<Real>::growth(Scheduler& scheduler, const Step& step, const BodyMotion& motion,
-                                std::span<const double> before_hold, Inner& energy) {
-    const double h = step.momentum_length;
-    const BodyLoads& loads = *step.loads;
+double StepEnergy<Real>::growth(Scheduler& scheduler, const StepEquations& step, const BodyLoads& loads,
+                                const BodyMotion& motion, std::span<const double> before_hold, Inner& energy) {
+    const double h = step.momentum_length();
+    const std::span<const double> start = step.position(), start_velocity = step.velocity();
     const bool has_holds = !before_hold.empty();
     Inner after;
     after.elastic = has_holds ? elements_->evaluate(
@@ -76,10 +76,10 @@ double StepEnergy<Real>::growth(Scheduler& scheduler, const Step& step, const Bo
         double sum = 0;
         bool is_held = false;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double moved = motion.position[at + axis] - step.position[at + axis];
+            const double moved = motion.position[at + axis] - start[at + axis];
             const double load = inertia_->row_sums[node] * loads.gravity[axis] + loads.nodal[at + axis];
             sum += load * moved;
-            is_held = is_held || (has_holds && before_hold[at + axis] != step.velocity[at + axis]);
+            is_held = is_held || (has_holds && before_hold[at + axis] != start_velocity[at + axis]);
         }
         if (!has_holds) return sum;
         // The hold adds whatever the node's motion needs beyond inertia, loads and elastic force.
@@ -88,7 +88,7 @@ double StepEnergy<Real>::growth(Scheduler& scheduler, const Step& step, const Bo
             const double gained = inertia_->momentum(
                 node, [&](std::size_t j) { return motion.velocity[4 * j + axis] - before_hold[4 * j + axis]; });
             const double reaction = gained / h - load - static_cast<double>(elements_->force()[at + axis]);
-            sum += reaction * (motion.position[at + axis] - step.position[at + axis]);
+            sum += reaction * (motion.position[at + axis] - start[at + axis]);
         }
         return sum;
     });

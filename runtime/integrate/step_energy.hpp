@@ -3,8 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "lancet/runtime/integrate/inertia.hpp"
-#include "lancet/runtime/integrate/step_method.hpp"
+#include "lancet/runtime/integrate/step_equations.hpp"
 
 namespace lancet::runtime {
 
@@ -20,20 +19,11 @@ class StepEnergy {
     /// In joules, with the rotations taken up at `position`.
     double elastic(Scheduler& scheduler, const double* position);
 
-    /// What a step starts from and what acts on it: x = x~ + c v, M (v - v~) = g (f - D v) + i.
-    struct Step {
-        std::span<const double> position;  ///< x~
-        std::span<const double> velocity;  ///< v~
-        std::span<const double> impulse;   ///< i, newton seconds; empty for none
-        double position_length;            ///< c
-        double momentum_length;            ///< g
-        const BodyLoads* loads;
-    };
     /// The function of v whose minimum solves the step where there is no damping proportional to the stiffness:
     ///     |v - v~|_M^2 / 2 + g alpha |v|_M^2 / 2 + (g / c) W(x~ + c v) - (g f_ext + i) v.
     /// `position` is x~ + c v.
-    double incremental_potential(Scheduler& scheduler, const Step& step, std::span<const double> position,
-                                 std::span<const double> velocity);
+    double incremental_potential(Scheduler& scheduler, const StepEquations& step, const BodyLoads& loads,
+                                 std::span<const double> position, std::span<const double> velocity);
 
     /// Kinetic and elastic energy in joules.
     struct Inner {
@@ -44,8 +34,8 @@ class StepEnergy {
     /// What a step of implicit Euler gained in energy beyond the work of loads and holds, less what rounding explains;
     /// infinite for energies that are not finite. `before_hold` are the velocities as they were before held nodes got
     /// theirs, empty if no node is held. `energy` is that at the start, on exit that of the motion.
-    double growth(Scheduler& scheduler, const Step& step, const BodyMotion& motion, std::span<const double> before_hold,
-                  Inner& energy);
+    double growth(Scheduler& scheduler, const StepEquations& step, const BodyLoads& loads, const BodyMotion& motion,
+                  std::span<const double> before_hold, Inner& energy);
 
     std::size_t bytes() const noexcept { return kernels::heap_bytes(partial_); }
 

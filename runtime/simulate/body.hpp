@@ -82,7 +82,7 @@ class BodyState {
 /// and goes on from there with Newton iterations if asked for. If the energy then exceeds what it was plus the work of
 /// loads and holds, the step is repeated from the new state with a line search on the incremental potential
 /// |v - v_n|_M^2 / 2 + W(x_n + dt v) - work of the loads, and slowed down if that does not bring the energy down.
-/// ImplicitStep and ExplicitStep have the equations of the other integrators. Loads that are set before a step are
+/// StepEquations and ExplicitStep have the equations of the other integrators. Loads that are set before a step are
 /// those at its end. Newmark's accelerations are found anew from the forces where positions, velocities or the set of
 /// held components have been changed. Held components move at constant speed during a step; with a consistent mass the
 /// change of that speed from step to step acts on their neighbours, which is of first order in dt for all integrators.
