@@ -5,27 +5,19 @@
 #include <span>
 #include <vector>
 
-#include "lancet/runtime/solve/aggregates.hpp"
+#include "lancet/runtime/schedule/scheduler.hpp"
 #include "lancet/runtime/solve/row_operators.hpp"
 
 namespace lancet::runtime {
-
-/// The coarse matrix with its modes and factors.
-struct CoarseMatrices;
 
 /// The rigid-body modes of the aggregates of a numbering, as an additive coarse space: correction = Z (Z^T A Z)^-1 Z^T
 /// r. A cut in place severs aggregates: their pieces have modes of their own (Aggregates).
 ///
 /// Z holds translations and rotations about each aggregate's current centre, orthonormalised; modes that an aggregate
-/// does not have (one node, collinear or collapsed nodes) are left out. Z^T A Z comes from the edge blocks of A in one
-/// sweep over the edges. It is scaled by its diagonal and factorised in double: densely up to `dense_limit` unknowns,
-/// sparsely above.
+/// does not have are left out (RigidModes). Z^T A Z is gathered by CoarseMatrix and solved with by CoarseFactor.
 template <class Real>
 class CoarseSpace {
   public:
-    static constexpr int modes = 6;
-    static constexpr int dense_limit = 120;
-
     /// `edges` must be of content upper_edges.
     CoarseSpace(const kernels::KernelSet<Real>& kernels, const kernels::NodeNumbering& numbering,
                 const BlockMatrix<Real>& edges);
@@ -67,24 +59,18 @@ class CoarseSpace {
     void restore(std::span<const double>& numbers);
 
   private:
-    /// How many aggregates and pieces there are modes for.
-    int counted() const noexcept { return unknowns() / modes; }
-    void take_up_edges(int block);
-    void take_up_aggregates();
-    void set_modes(const double* positions, int block);
-    void accumulate(const Real* scaled_mass, int block);
+    /// Aggregates, modes, matrix and factor: with types of Eigen, which users of the library need not have.
+    struct Parts;
+
+    /// Makes places for all aggregates and pieces, and lays out the factor.
+    void lay_out();
     bool factorise();
 
-    const kernels::KernelSet<Real>* kernels_;
     const kernels::NodeNumbering* numbering_;
-    const BlockMatrix<Real>* edges_;
-    Aggregates aggregates_;
-    kernels::AlignedVector<Real> offset_;  ///< xyz_, from the centre of the aggregate or piece
     std::vector<double> restricted_;
     std::vector<Real> correction_;
-    std::vector<double> change_;  ///< [block]
     bool is_fresh_ = false;
-    std::unique_ptr<CoarseMatrices> matrices_;
+    std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace lancet::runtime
