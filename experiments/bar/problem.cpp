@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "lancet/experiments/common/table.hpp"
 #include "lancet/kernels/error.hpp"
 #include "lancet/mesh/generate/box.hpp"
 #include "lancet/mesh/io/read.hpp"
@@ -50,16 +51,10 @@ void add_list(CLI::App& app, const std::string& option, std::array<Number, count
         ->type_name("LIST");
 }
 
-std::string exact(double value) {
-    std::array<char, 32> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-    return {buffer.data(), end};
-}
-
 template <class Number, std::size_t count>
 std::string join(const std::array<Number, count>& numbers) {
     std::string text;
-    for (const Number number : numbers) text += (text.empty() ? "" : ",") + exact(static_cast<double>(number));
+    for (const Number number : numbers) text += (text.empty() ? "" : ",") + format_exact(static_cast<double>(number));
     return text;
 }
 
@@ -68,7 +63,7 @@ void check(bool holds, const std::string& option, const std::string& found, cons
 }
 
 void check_positive(const std::string& option, double value) {
-    check(std::isfinite(value) && value > 0, option, exact(value), "a positive number");
+    check(std::isfinite(value) && value > 0, option, format_exact(value), "a positive number");
 }
 
 void check_options(const ProblemOptions& options) {
@@ -82,14 +77,15 @@ void check_options(const ProblemOptions& options) {
         check_positive("--mesh-scale", options.mesh_scale);
     }
     check_positive("--young", options.young_modulus);
-    check(options.poisson_ratio > -1 && options.poisson_ratio < 0.5, "--poisson", exact(options.poisson_ratio),
+    check(options.poisson_ratio > -1 && options.poisson_ratio < 0.5, "--poisson", format_exact(options.poisson_ratio),
           "a number above -1 and below 0.5");
     check_positive("--density", options.density);
     for (const double factor : options.rayleigh) {
-        check(std::isfinite(factor) && factor >= 0, "--rayleigh", exact(factor), "numbers that are not negative");
+        check(std::isfinite(factor) && factor >= 0, "--rayleigh", format_exact(factor),
+              "numbers that are not negative");
     }
     for (const double component : options.gravity) {
-        check(std::isfinite(component), "--gravity", exact(component), "finite numbers");
+        check(std::isfinite(component), "--gravity", format_exact(component), "finite numbers");
     }
     check_positive("--time-step", options.time_step);
     check(options.steps >= 1, "--steps", std::to_string(options.steps), "at least 1");
@@ -130,7 +126,8 @@ std::vector<std::int32_t> nodes_where(const mesh::TetMesh& mesh,
 std::vector<std::int32_t> nodes_in_box(const mesh::TetMesh& mesh, const std::array<double, 6>& box) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         check(std::isfinite(box[axis]) && std::isfinite(box[axis + 3]) && box[axis] <= box[axis + 3], "--fix",
-              exact(box[axis]) + " to " + exact(box[axis + 3]), "xmin,ymin,zmin,xmax,ymax,zmax with min <= max");
+              format_exact(box[axis]) + " to " + format_exact(box[axis + 3]),
+              "xmin,ymin,zmin,xmax,ymax,zmax with min <= max");
     }
     return nodes_where(mesh, [&box](const mesh::Point& point) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -202,15 +199,15 @@ std::vector<std::string> problem_arguments(const ProblemOptions& options) {
         add("--split", std::to_string(options.split));
     } else {
         add("--mesh", options.mesh);
-        add("--mesh-scale", exact(options.mesh_scale));
+        add("--mesh-scale", format_exact(options.mesh_scale));
     }
     add("--fix", options.fix);
-    add("--young", exact(options.young_modulus));
-    add("--poisson", exact(options.poisson_ratio));
-    add("--density", exact(options.density));
+    add("--young", format_exact(options.young_modulus));
+    add("--poisson", format_exact(options.poisson_ratio));
+    add("--density", format_exact(options.density));
     add("--rayleigh", join(options.rayleigh));
     add("--gravity", join(options.gravity));
-    add("--time-step", exact(options.time_step));
+    add("--time-step", format_exact(options.time_step));
     add("--steps", std::to_string(options.steps));
     return arguments;
 }

@@ -1,11 +1,10 @@
 #include "lancet/experiments/bar/workers.hpp"
 
-#include <array>
-#include <charconv>
 #include <cstdlib>
 #include <system_error>
 
 #include "lancet/experiments/common/process.hpp"
+#include "lancet/experiments/common/table.hpp"
 #include "lancet/kernels/error.hpp"
 
 namespace lancet::experiments::bar {
@@ -34,9 +33,7 @@ class ScratchFolder {
 std::string join(const std::vector<double>& values) {
     std::string text;
     for (const double value : values) {
-        std::array<char, 32> buffer{};  // the shortest text that reads back as the same number
-        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-        text += (text.empty() ? "" : ",") + std::string(buffer.data(), end);
+        text += (text.empty() ? "" : ",") + format_exact(value);
     }
     return text;
 }

@@ -22,12 +22,6 @@ std::string print_with(const char* format, int precision, double value) {
     return text;
 }
 
-std::string all_digits(double value) {
-    std::array<char, 64> buffer{};
-    const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-    return {buffer.data(), result.ptr};
-}
-
 std::string printed_text(const Cell& cell, int significant_digits) {
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
     if (const auto* number = std::get_if<double>(&cell)) return format_number(*number, significant_digits);
@@ -37,7 +31,7 @@ std::string printed_text(const Cell& cell, int significant_digits) {
 
 std::string csv_text(const Cell& cell) {
     if (const auto* text = std::get_if<std::string>(&cell)) return quote_csv(*text);
-    if (const auto* number = std::get_if<double>(&cell)) return all_digits(*number);
+    if (const auto* number = std::get_if<double>(&cell)) return format_exact(*number);
     if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
     return {};
 }
@@ -134,6 +128,11 @@ nlohmann::ordered_json Table::to_json() const {
         rows.push_back(std::move(object));
     }
     return rows;
+}
+
+std::string format_exact(double value) {
+    std::array<char, 32> buffer{};
+    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
 std::string format_number(double value, int significant_digits) {

@@ -56,6 +56,9 @@ class Table {
 /// `value` with `significant_digits` digits: fixed notation where it is short, scientific below 1e-4 and from 1e7 on.
 [[nodiscard]] std::string format_number(double value, int significant_digits);
 
+/// The shortest text that reads back as the same number.
+[[nodiscard]] std::string format_exact(double value);
+
 /// `field` as RFC 4180 wants it: in double quotes, with inner ones doubled, if it holds a comma, a quote or a line end.
 [[nodiscard]] std::string quote_csv(const std::string& field);
 

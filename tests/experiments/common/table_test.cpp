@@ -65,6 +65,11 @@ TEST(Table, RefusesWhatDoesNotFit) {
     EXPECT_EQ(table.rows().size(), 2u);
 }
 
+TEST(Table, FormatsNumbersExactly) {
+    for (const double value : {0.1, 1.0 / 3, -1e300}) EXPECT_EQ(std::stod(format_exact(value)), value);
+    EXPECT_EQ(format_exact(0.005), "0.005");
+}
+
 TEST(FormatNumber, HasItsSignificantDigits) {
     EXPECT_EQ(format_number(3.14159, 3), "3.14");
     EXPECT_EQ(format_number(-3.14159, 1), "-3");
