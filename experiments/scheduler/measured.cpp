@@ -1,21 +1,36 @@
 #include "lancet/experiments/scheduler/measured.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <numeric>
 
 #include "lancet/experiments/common/statistics.hpp"
 
 namespace lancet::experiments::scheduler {
 namespace {
 
-/// The median over steps of f(step) for each repetition.
-template <class F>
-Spread over_repetitions(std::span<const WorkerReport> reports, std::size_t subject, const F& of_step) {
+/// Some steps in a row of each subject in one process.
+struct Window {
+    const WorkerReport* report;
+    std::size_t begin, end;
+
+    double sum(const std::vector<double>& of_steps) const {
+        const auto first = of_steps.begin();
+        return std::accumulate(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+                               0.0);
+    }
+    const SubjectReport& subject(std::size_t k) const { return report->subjects[k]; }
+    double seconds(std::size_t k) const { return sum(subject(k).seconds); }
+};
+
+/// The median over windows of value(window), for each repetition.
+template <class Value>
+Spread over_repetitions(std::span<const WorkerReport> reports, int window, const Value& value) {
     std::vector<double> medians;
     for (const WorkerReport& report : reports) {
+        const std::size_t steps = report.subjects.front().seconds.size(), length = static_cast<std::size_t>(window);
         std::vector<double> values;
-        for (std::size_t step = 0; step < report.subjects[subject].seconds.size(); ++step) {
-            values.push_back(of_step(report, step));
+        for (std::size_t begin = 0; begin + length <= steps; begin += length) {
+            values.push_back(value(Window{&report, begin, begin + length}));
         }
         medians.push_back(median(values));
     }
@@ -66,31 +81,27 @@ std::vector<Measured> evaluate(const WorkerJob& job, std::span<const WorkerRepor
             if (row.tasks > 0) empty.push_back(of.empty_graph_seconds / row.tasks);
         }
         if (!empty.empty()) row.seconds_per_task = median(empty);
-        const auto ratio_to = [k](std::size_t other) {
-            return [k, other](const WorkerReport& report, std::size_t step) {
-                return report.subjects[k].seconds[step] / report.subjects[other].seconds[step];
-            };
-        };
-        row.to_serial = over_repetitions(reports, k, ratio_to(0));
-        row.to_bare = over_repetitions(reports, k, ratio_to(bare));
+        const auto over_windows = [&](const auto& value) { return over_repetitions(reports, job.window, value); };
+        row.to_serial = over_windows([&](const Window& w) { return w.seconds(k) / w.seconds(0); });
+        row.to_bare = over_windows([&](const Window& w) { return w.seconds(k) / w.seconds(bare); });
         if (row.extras != Extras::nothing) {
-            row.frames = over_repetitions(reports, k, [&](const WorkerReport& report, std::size_t step) {
-                return report.subjects[k].frame_seconds[step];
+            row.frames = over_windows([&](const Window& w) {
+                return w.sum(w.subject(k).frame_seconds) / static_cast<double>(w.end - w.begin);
             });
-            row.side = over_repetitions(reports, k, [&](const WorkerReport& report, std::size_t step) {
-                return report.subjects[k].side_seconds[step] / report.subjects[bare].seconds[step];
-            });
-            row.graph = over_repetitions(reports, k, [&](const WorkerReport& report, std::size_t step) {
-                const SubjectReport& of = report.subjects[k];
-                return (of.seconds[step] - of.task_seconds[step]) / report.subjects[bare].seconds[step];
-            });
+            row.side =
+                over_windows([&](const Window& w) { return w.sum(w.subject(k).side_seconds) / w.seconds(bare); });
+            row.graph = over_windows(
+                [&](const Window& w) { return (w.seconds(k) - w.sum(w.subject(k).task_seconds)) / w.seconds(bare); });
         }
         if (row.extras == Extras::frames) {
-            row.hidden = over_repetitions(reports, k, [&](const WorkerReport& report, std::size_t step) {
-                const SubjectReport& of = report.subjects[k];
-                const double longer = of.seconds[step] - report.subjects[without_frames].seconds[step];
-                return 1 - longer / of.frame_seconds[step];
+            row.hidden = over_windows([&](const Window& w) {
+                return 1 - (w.seconds(k) - w.seconds(without_frames)) / w.sum(w.subject(k).frame_seconds);
             });
+            row.beside = over_windows([&](const Window& w) {
+                return w.sum(w.subject(k).frame_seconds_beside) / w.sum(w.subject(k).frame_seconds);
+            });
+            row.hidden_at_most =
+                over_windows([&](const Window& w) { return w.seconds(without_frames) / w.seconds(0); });
         }
         rows.push_back(std::move(row));
     }

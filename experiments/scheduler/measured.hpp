@@ -32,8 +32,12 @@ struct Measured {
     Spread to_bare{};               ///< step over the same step without a graph, on the same scheduler and threads
     Spread frames{};                ///< s, time of the frames' tasks in a step; of a form with frames
     Spread hidden{};                ///< share of that time by which the step is not longer than without frames
-    Spread side{};                  ///< work of all side tasks over the bare step; of a form with everything
-    Spread graph{};                 ///< time of the step outside of its tasks over the bare step; for one thread
+    Spread beside{};                ///< share of that time in which a stage of the body ran on another thread
+    /// Most that can be hidden on two threads. A solve that takes s of the serial time on both goes on at the speed s
+    /// on one of them while the other draws: a task of length t makes the step longer by (1 - s) t at least.
+    Spread hidden_at_most{};
+    Spread side{};   ///< work of all side tasks over the bare step; of a form with everything
+    Spread graph{};  ///< time of the step outside of its tasks over the bare step; for one thread
     int tasks = 0;
     double seconds_per_task = 0;  ///< of an empty graph
     bool bit_identical = false;

@@ -33,8 +33,8 @@ ExitCode body(int argc, const char* const* argv) {
     const std::vector<std::string> lines = verdict(rows, aims);
     const Table forms = form_table(rows), met = target_table(aims);
 
-    std::cout
-        << "The Bar, 10 CG iterations a step of 40 ms: forms of the step, each scheduler in a process of its own\n";
+    std::cout << "The Bar, 10 CG iterations a step of " << format_number(1e3 * settings->body.time_step, 3)
+              << " ms: forms of the step, each scheduler in a process of its own\n";
     forms.print(std::cout);
     std::cout << "\nOverhead: over the same step without a graph on as many threads of the same scheduler (on one\n"
                  "thread: without a scheduler), taken in turns in the same process; medians of "

@@ -1,9 +1,11 @@
 #include "lancet/experiments/scheduler/settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <CLI/CLI.hpp>
 
+#include "lancet/experiments/common/table.hpp"
 #include "lancet/kernels/error.hpp"
 
 namespace lancet::experiments::scheduler {
@@ -30,6 +32,15 @@ WorkerJob job_for(int elements, const SchedulerSettings& settings) {
     job.runs = is_quick || !is_small ? 1 : 2;
     job.steps = is_quick ? 25 : is_small ? 125 : 40;
     job.block = is_quick ? 5 : elements <= 1600 ? 20 : is_small ? 10 : 5;
+    // Where frames are rarer than steps: three frames and twenty collisions.
+    constexpr double time_between_frames = 1.0 / 30;
+    const double time_step = settings.body.time_step;
+    if (time_step < time_between_frames) {
+        const auto up = [&job](int steps) { return (steps + job.window - 1) / job.window * job.window; };
+        job.window = static_cast<int>(std::ceil(3 * time_between_frames / time_step - 1e-9));
+        job.block = up(job.block);
+        job.steps = up(job.steps);
+    }
     return job;
 }
 
@@ -48,6 +59,10 @@ std::optional<SchedulerSettings> parse_settings(int argc, const char* const* arg
            },
            "Bars of so many elements, a list out of: " + all)
         ->type_name("LIST");
+    app.add_option("--time-step", settings.body.time_step,
+                   "Time step in s; shorter than the 0.033 s between frames, some steps have none")
+        ->check(CLI::Range(1e-4, 1.0))
+        ->capture_default_str();
     app.add_option("--repetitions", settings.repetitions, "Processes for each row; 5, or 3 with --quick")
         ->check(CLI::Range(1, 1000));
     bool is_worker = false;
@@ -96,6 +111,7 @@ std::vector<std::string> worker_arguments(int elements, runtime::SchedulerKind k
                                           const SchedulerSettings& settings) {
     std::vector<std::string> arguments{"--worker",
                                        "--elements=" + std::to_string(elements),
+                                       "--time-step=" + format_exact(settings.body.time_step),
                                        "--scheduler=" + std::string(to_string(kind)),
                                        "--threads=" + std::to_string(threads),
                                        "--isa=" + std::string(kernels::to_string(settings.body.instruction_set)),

@@ -1,5 +1,7 @@
 #include "lancet/experiments/scheduler/subject.hpp"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -42,18 +44,38 @@ class Loops final : public Subject {
     std::unique_ptr<runtime::DeformableBody> body_;
 };
 
-/// The times of the last step's tasks by their numbers.
+struct Interval {
+    double begin = 0, end = 0;
+
+    double length() const noexcept { return end - begin; }
+};
+
+double common_length(const Interval& a, const Interval& b) noexcept {
+    return std::max(0.0, std::min(a.end, b.end) - std::max(a.begin, b.begin));
+}
+
+/// When the last step's tasks ran, by their numbers.
 class TaskTimes final : public runtime::TaskObserver {
   public:
     void ended(int task, std::string_view, double begin, double end) noexcept override {
         // Every task has a place of its own, and the step's end orders them with who reads.
-        if (static_cast<std::size_t>(task) < seconds_.size()) seconds_[static_cast<std::size_t>(task)] = end - begin;
+        if (static_cast<std::size_t>(task) < times_.size()) times_[static_cast<std::size_t>(task)] = {begin, end};
     }
-    double of(std::size_t task) const noexcept { return task < seconds_.size() ? seconds_[task] : 0; }
+    Interval of(std::size_t task) const noexcept { return task < times_.size() ? times_[task] : Interval{}; }
 
   private:
-    std::array<double, 64> seconds_{};
+    std::array<Interval, 64> times_{};
 };
+
+bool is_stage(const std::string& task) {
+    return std::ranges::any_of(runtime::step_stages, [&task](runtime::StepStage stage) {
+        return task.ends_with(": " + std::string(to_string(stage)));
+    });
+}
+
+bool is_of_frames(const std::string& task) {
+    return task == "frame" || task.ends_with(": surface");
+}
 
 /// To and fro 5 cm above the bar near the clamp, where it does not rise; sampled at 200 Hz.
 runtime::ToolPath hover(double radius) {
@@ -98,15 +120,15 @@ class Tasks final : public Subject {
         TaskSeconds seconds;
         const auto tasks = simulation_.task_statistics();
         for (std::size_t task = 0; task < tasks.size(); ++task) {
-            const std::string& name = tasks[task].name;
-            const double time = times_.of(task);
-            bool is_stage = false;
-            for (const runtime::StepStage stage : runtime::step_stages) {
-                is_stage = is_stage || name.ends_with(": " + std::string(to_string(stage)));
+            const Interval time = times_.of(task);
+            seconds.all += time.length();
+            if (!is_stage(tasks[task].name)) seconds.side += time.length();
+            if (!is_of_frames(tasks[task].name)) continue;
+            seconds.frames += time.length();
+            // The stages of one body follow each other.
+            for (std::size_t other = 0; other < tasks.size(); ++other) {
+                if (is_stage(tasks[other].name)) seconds.frames_beside += common_length(time, times_.of(other));
             }
-            seconds.all += time;
-            if (!is_stage) seconds.side += time;
-            if (name == "frame" || name.ends_with(": surface")) seconds.frames += time;
         }
         return seconds;
     }

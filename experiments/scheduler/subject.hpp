@@ -32,8 +32,9 @@ Extras extras_from_string(std::string_view text);
 
 /// What the tasks of one step took, in seconds.
 struct TaskSeconds {
-    double frames = 0;  ///< surfaces and frames
-    double side = 0;    ///< all tasks that are no stage of the body's step
+    double frames = 0;         ///< surfaces and frames
+    double frames_beside = 0;  ///< the part of it in which a stage of the body's step ran on another thread
+    double side = 0;           ///< all tasks that are no stage of the body's step
     double all = 0;
 };
 

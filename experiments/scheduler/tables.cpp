@@ -46,13 +46,16 @@ Table target_table(std::span<const Target> targets) {
                  {"highest", "highest", "%", 2},
                  {"side_percent", "its work", "% of bare", 2},
                  {"graph_percent", "in no task", "% of bare", 2},
+                 {"beside_percent", "beside the solve", "% of frames", 2},
+                 {"at_most_percent", "can be hidden", "% of frames", 2},
                  {"met", "met"}});
     for (const Target& target : targets) {
-        table.add_row({target.what, target.elements, std::int64_t{target.threads}, target.form,
-                       std::string(target.is_at_most ? "<= " : ">= ") + format_number(target.bound, 2),
-                       target.percent.middle, target.percent.lowest, target.percent.highest,
-                       target.side ? Cell{target.side->middle} : Cell{},
-                       target.graph ? Cell{target.graph->middle} : Cell{}, target.is_met()});
+        table.add_row(
+            {target.what, target.elements, std::int64_t{target.threads}, target.form,
+             std::string(target.is_at_most ? "<= " : ">= ") + format_number(target.bound, 2), target.percent.middle,
+             target.percent.lowest, target.percent.highest, target.side ? Cell{target.side->middle} : Cell{},
+             target.graph ? Cell{target.graph->middle} : Cell{}, target.beside ? Cell{target.beside->middle} : Cell{},
+             target.at_most ? Cell{target.at_most->middle} : Cell{}, target.is_met()});
     }
     return table;
 }

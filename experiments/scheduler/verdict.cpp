@@ -57,20 +57,35 @@ std::string ranking(std::vector<const Measured*> rows) {
     return text;
 }
 
+/// The lowest and the highest of a value in percent.
+template <class Value>
+std::string range(std::span<const Target> alike, const Value& value) {
+    double lowest = value(alike.front()), highest = lowest;
+    for (const Target& target : alike) {
+        lowest = std::min(lowest, value(target));
+        highest = std::max(highest, value(target));
+    }
+    return format_number(lowest, 2) + " to " + format_number(highest, 2) + " %";
+}
+
 /// How one aim went over all rows it is measured in.
 std::string summary(std::span<const Target> alike) {
-    double lowest = alike.front().percent.middle, highest = lowest;
     std::array<int, 3> counts{};
     for (const Target& target : alike) {
-        lowest = std::min(lowest, target.percent.middle);
-        highest = std::max(highest, target.percent.middle);
         const std::string met = target.is_met();
         ++counts[met == "yes" ? 0 : met == "no" ? 1 : 2];
     }
-    return alike.front().what + ", " + (alike.front().is_at_most ? "at most " : "at least ") +
-           format_number(alike.front().bound, 2) + " %: reached in " + std::to_string(counts[0]) + " rows, missed in " +
-           std::to_string(counts[1]) + ", undecided within the noise in " + std::to_string(counts[2]) + "; measured " +
-           format_number(lowest, 2) + " to " + format_number(highest, 2) + " %";
+    std::string text = alike.front().what + ", " + (alike.front().is_at_most ? "at most " : "at least ") +
+                       format_number(alike.front().bound, 2) + " %: reached in " + std::to_string(counts[0]) +
+                       " rows, missed in " + std::to_string(counts[1]) + ", undecided within the noise in " +
+                       std::to_string(counts[2]) + "; measured " +
+                       range(alike, [](const Target& target) { return target.percent.middle; });
+    if (alike.front().beside && alike.front().at_most) {
+        text += "; " + range(alike, [](const Target& target) { return target.beside->middle; }) +
+                " ran beside the solve, and as that would use both threads itself, at most " +
+                range(alike, [](const Target& target) { return target.at_most->middle; }) + " can be hidden";
+    }
+    return text;
 }
 
 }  // namespace
@@ -105,6 +120,8 @@ std::vector<Target> targets(std::span<const Measured> rows) {
             target.bound = 80;
             target.percent = percent(row.hidden);
             target.side = percent(row.side);
+            target.beside = percent(row.beside);
+            target.at_most = percent(row.hidden_at_most);
             found.push_back(target);
         }
     }

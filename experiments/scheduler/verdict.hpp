@@ -22,6 +22,7 @@ struct Target {
     double bound = 0;        ///< percent
     Spread percent{};
     std::optional<Spread> side{}, graph{};  ///< percent of the bare step: the extras' own work, and what is in no task
+    std::optional<Spread> beside{}, at_most{};  ///< percent of the frames' time: see Measured
 
     /// "yes" or "no" where all repetitions agree, else "within noise".
     std::string is_met() const;

@@ -56,6 +56,7 @@ void take_step(Subject& subject, SubjectReport& report) {
     report.seconds.push_back(runtime::steady_seconds() - begin);
     const TaskSeconds tasks = subject.task_seconds();
     report.frame_seconds.push_back(tasks.frames);
+    report.frame_seconds_beside.push_back(tasks.frames_beside);
     report.side_seconds.push_back(tasks.side);
     report.task_seconds.push_back(tasks.all);
 }
@@ -105,6 +106,7 @@ std::string to_line(const WorkerReport& report) {
                                     {"extras", subject.extras},
                                     {"seconds", subject.seconds},
                                     {"frame_seconds", subject.frame_seconds},
+                                    {"frame_seconds_beside", subject.frame_seconds_beside},
                                     {"side_seconds", subject.side_seconds},
                                     {"task_seconds", subject.task_seconds},
                                     {"bit_identical", subject.bit_identical},
@@ -123,6 +125,7 @@ WorkerReport report_from_line(const std::string& line) {
                                        .extras = subject.at("extras"),
                                        .seconds = subject.at("seconds"),
                                        .frame_seconds = subject.at("frame_seconds"),
+                                       .frame_seconds_beside = subject.at("frame_seconds_beside"),
                                        .side_seconds = subject.at("side_seconds"),
                                        .task_seconds = subject.at("task_seconds"),
                                        .bit_identical = subject.at("bit_identical"),

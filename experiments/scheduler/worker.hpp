@@ -16,6 +16,7 @@ struct WorkerJob {
     int runs = 1;  ///< of `steps` steps each, from the start
     int steps = 125;
     int block = 10;  ///< steps that one subject takes before the next has its turn
+    int window = 1;  ///< steps that are compared as one: short steps have a frame or a collision in some of them only
 };
 
 /// How one subject did. All vectors have an entry for each step of each run.
@@ -23,12 +24,13 @@ struct SubjectReport {
     bool is_tasks = false;
     std::string extras = "nothing";
     std::vector<double> seconds{};
-    std::vector<double> frame_seconds{};  ///< in tasks of surfaces and frames; 0 where nobody observes tasks
-    std::vector<double> side_seconds{};   ///< in all tasks but the stages of the body
-    std::vector<double> task_seconds{};   ///< in all tasks
-    bool bit_identical = false;           ///< positions after every run equal those of the first subject
-    int tasks = 0;                        ///< of its graph; 0: none
-    double empty_graph_seconds = 0;       ///< of a run of the same graph without work
+    std::vector<double> frame_seconds{};         ///< in tasks of surfaces and frames; 0 where nobody observes tasks
+    std::vector<double> frame_seconds_beside{};  ///< of these, while a stage of the body ran on another thread
+    std::vector<double> side_seconds{};          ///< in all tasks but the stages of the body
+    std::vector<double> task_seconds{};          ///< in all tasks
+    bool bit_identical = false;                  ///< positions after every run equal those of the first subject
+    int tasks = 0;                               ///< of its graph; 0: none
+    double empty_graph_seconds = 0;              ///< of a run of the same graph without work
 };
 
 struct WorkerReport {

@@ -61,10 +61,25 @@ TEST(SchedulerProgram, MeasuresAllForms) {
     EXPECT_EQ(json.at("targets").size(), has_tbb ? 5U : 2U);
 }
 
+TEST(SchedulerProgram, TakesShortSteps) {
+    const test::TemporaryFolder folder;
+    const auto json_file = folder.path() / "out.json";
+    std::string output;
+    ASSERT_EQ(run({"--quick", "--elements=1600", "--repetitions=1", "--scheduler=serial", "--time-step=0.005", "--json",
+                   json_file.string()},
+                  &output),
+              0);
+    EXPECT_THAT(output, testing::HasSubstr("a step of 5 ms"));
+    const auto json = nlohmann::json::parse(std::ifstream(json_file));
+    EXPECT_EQ(json.at("rows").size(), 4U);
+    for (const auto& row : json.at("rows")) EXPECT_EQ(row.at("steps"), 40) << "two windows of 0.1 s";
+}
+
 TEST(SchedulerProgram, RefusesBadInputWithExitCode2) {
     EXPECT_EQ(run({"--help"}), 0);
-    for (const std::string bad : {"--elements=1000", "--elements=", "--threads=0", "--scalar=half", "--isa=mmx",
-                                  "--scheduler=cron", "--repetitions=0", "--json=/nowhere/out.json", "--unknown"}) {
+    for (const std::string bad :
+         {"--elements=1000", "--elements=", "--threads=0", "--scalar=half", "--isa=mmx", "--scheduler=cron",
+          "--repetitions=0", "--time-step=0", "--json=/nowhere/out.json", "--unknown"}) {
         EXPECT_EQ(run({bad}), 2) << bad;
     }
     EXPECT_EQ(run({"--scheduler=serial", "--threads=2"}), 2);

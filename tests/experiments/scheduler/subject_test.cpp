@@ -46,6 +46,7 @@ TEST(Subject, TellsWhatItsTasksTook) {
             subject->step();
             const TaskSeconds seconds = subject->task_seconds();
             EXPECT_GT(seconds.frames, 0);
+            EXPECT_EQ(seconds.frames_beside, 0);
             EXPECT_GT(seconds.side, seconds.frames);
             EXPECT_GT(seconds.all, seconds.side);
         }

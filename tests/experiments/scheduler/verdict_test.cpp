@@ -71,6 +71,8 @@ TEST(Target, AreThoseOfTheRowsThatWereMeasured) {
                      row("graph", {1.1, 1.2, 1.3}, Extras::everything, 1),
                      row("graph", {0.6, 0.6, 0.6}, Extras::frames)};
     rows[2].hidden = {0.7, 0.75, 0.85};
+    rows[2].beside = {0.9, 0.9, 0.9};
+    rows[2].hidden_at_most = {0.8, 0.8, 0.8};
     const auto found = targets(rows);
     ASSERT_EQ(found.size(), 3U);
     EXPECT_NEAR(found[0].percent.middle, 20, 1e-9);
@@ -80,6 +82,7 @@ TEST(Target, AreThoseOfTheRowsThatWereMeasured) {
     EXPECT_NEAR(found[2].percent.middle, 0.5, 1e-9);
     const auto lines = verdict(rows, found);
     EXPECT_THAT(lines, testing::Contains(AllOf(HasSubstr("everything on"), HasSubstr("missed in 1"))));
+    EXPECT_THAT(lines, testing::Contains(AllOf(HasSubstr("90 to 90 % ran beside"), HasSubstr("80 to 80 % can be"))));
     EXPECT_EQ(target_table(found).rows().size(), 3U);
 }
 
@@ -91,6 +94,7 @@ TEST(Measured, ComparesTheSameStepsOfOneProcess) {
         for (const double seconds : {1.0, 2.0, 1.0}) {
             subject.seconds.push_back(factor * seconds);
             subject.frame_seconds.push_back(0.4 * seconds);
+            subject.frame_seconds_beside.push_back(0.3 * seconds);
             subject.side_seconds.push_back(0.45 * seconds);
             subject.task_seconds.push_back(factor * seconds);
         }
@@ -110,8 +114,35 @@ TEST(Measured, ComparesTheSameStepsOfOneProcess) {
     EXPECT_NEAR(rows[0].to_serial.middle, 0.5, 1e-12);
     EXPECT_NEAR(rows[1].to_bare.middle, 1.2, 1e-12);
     EXPECT_NEAR(rows[2].hidden.middle, 1 - 0.3 / 0.4, 1e-12);
+    EXPECT_NEAR(rows[2].beside.middle, 0.75, 1e-12);
+    EXPECT_NEAR(rows[2].hidden_at_most.middle, 0.6, 1e-12);
     EXPECT_TRUE(rows[3].bit_identical);
     EXPECT_FALSE(evaluate(job, reports, "n")[3].bit_identical);
+}
+
+TEST(Measured, ComparesWindowsOfStepsWhereFramesAreRare) {
+    // Every third step has a frame, which adds a step's time of which nothing is hidden.
+    WorkerReport report{.motion = "m"};
+    for (const Extras extras : {Extras::nothing, Extras::nothing, Extras::nothing, Extras::frames}) {
+        SubjectReport subject{.extras = std::string(to_string(extras)), .bit_identical = true};
+        for (int step = 0; step < 6; ++step) {
+            const double frame = extras == Extras::frames && step % 3 == 0 ? 1 : 0;
+            subject.seconds.push_back(1 + frame);
+            subject.frame_seconds.push_back(frame);
+            subject.frame_seconds_beside.push_back(0);
+            subject.side_seconds.push_back(frame);
+            subject.task_seconds.push_back(1 + frame);
+        }
+        report.subjects.push_back(subject);
+    }
+    for (std::size_t k = 2; k < 4; ++k) report.subjects[k].is_tasks = true;
+    const WorkerJob job{.kind = runtime::SchedulerKind::tbb, .threads = 2, .window = 3};
+    const auto rows = evaluate(job, std::vector{report}, "m");
+    ASSERT_EQ(rows.size(), 3U);
+    EXPECT_NEAR(rows[2].to_bare.middle, 4.0 / 3, 1e-12);
+    EXPECT_NEAR(rows[2].frames.middle, 1.0 / 3, 1e-12);
+    EXPECT_NEAR(rows[2].side.middle, 1.0 / 3, 1e-12);
+    EXPECT_NEAR(rows[2].hidden.middle, 0, 1e-12);
 }
 
 }  // namespace
