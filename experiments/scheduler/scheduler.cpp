@@ -33,7 +33,7 @@ ExitCode body(int argc, const char* const* argv) {
     const std::vector<std::string> lines = verdict(rows, aims);
     const Table forms = form_table(rows), met = target_table(aims);
 
-    std::cout << "The Bar, 10 CG iterations a step of " << format_number(1e3 * settings->body.time_step, 3)
+    std::cout << "The Bar, 10 CG iterations a step of " << format_exact(1e3 * settings->body.time_step)
               << " ms: forms of the step, each scheduler in a process of its own\n";
     forms.print(std::cout);
     std::cout << "\nOverhead: over the same step without a graph on as many threads of the same scheduler (on one\n"
