@@ -48,11 +48,11 @@ void ScatterPlan::open(int block) {
 }
 
 void ScatterPlan::close() {
+    slot_end_.push_back(next_slot_);
     if (numbering_->has_room()) {
         // Foreign nodes that come later: for a block those of the room beside it, for the room all that border on it.
         const std::int32_t spare = numbering_->free_count - numbering_->spare_begin;
         const std::int32_t own = numbering_->block_begin[open_block_ + 1] - numbering_->block_begin[open_block_];
-        room_begin_.push_back(next_slot_);
         next_slot_ += open_block_ < numbering_->first_blocks() ? std::min(spare, own / 2 + 32) : 4 * spare + 64;
     }
     slot_begin_.push_back(next_slot_);
@@ -163,8 +163,8 @@ std::int32_t ScatterPlan::changed_target(const NodeNumbering& numbering, int blo
     std::vector<Merge>& changes = changes_[owner];
     const auto change = std::lower_bound(changes.begin(), changes.end(), first, is_before);
     if (is_found(change, changes.end())) return change->slot;
-    if (room_begin_.empty() || room_begin_[of_block] == slot_begin_[of_block + 1]) return -1;
-    const std::int32_t slot = room_begin_[of_block]++;
+    if (slot_end_[of_block] == slot_begin_[of_block + 1]) return -1;
+    const std::int32_t slot = slot_end_[of_block]++;
     changes.insert(change, {node, slot});
     return slot;
 }
@@ -185,7 +185,7 @@ void ScatterPlan::finish_changes() {
 }
 
 std::size_t ScatterPlan::bytes() const noexcept {
-    return heap_bytes(slot_begin_) + heap_bytes(merge_begin_) + heap_bytes(merges_) + heap_bytes(room_begin_);
+    return heap_bytes(slot_begin_) + heap_bytes(merge_begin_) + heap_bytes(merges_) + heap_bytes(slot_end_);
 }
 
 }  // namespace lancet::kernels

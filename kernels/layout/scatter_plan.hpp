@@ -52,6 +52,8 @@ class ScatterPlan {
     std::int32_t buffer_size() const noexcept { return next_slot_; }
     /// The slots of a block are [slot_begin[block], slot_begin[block + 1]).
     const std::vector<std::int32_t>& slot_begin() const noexcept { return slot_begin_; }
+    /// The end of the slots that are in use, [block]: what is behind is room, and nobody writes or reads it.
+    const std::vector<std::int32_t>& slot_end() const noexcept { return slot_end_; }
     /// What block b has to add to its nodes: merges[merge_begin[b], merge_begin[b + 1]), by node, then slot.
     const std::vector<std::int32_t>& merge_begin() const noexcept { return merge_begin_; }
     const std::vector<Merge>& merges() const noexcept { return merges_; }
@@ -75,7 +77,7 @@ class ScatterPlan {
     std::vector<std::int32_t> merge_begin_;
     std::vector<Merge> merges_;
     std::vector<std::vector<std::int32_t>> colors_;
-    std::vector<std::int32_t> room_begin_;     ///< the first slot of each block that nobody uses; empty without room
+    std::vector<std::int32_t> slot_end_;       ///< the end of the slots of each block that are in use
     std::vector<std::vector<Merge>> changes_;  ///< new merges of each block, by node, then slot
 };
 

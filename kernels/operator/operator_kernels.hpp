@@ -25,8 +25,9 @@ template <class Real>
 struct OpenArguments {
     const std::int32_t* block_begin;
     const std::int32_t* slot_begin;
-    const Real* mass;  ///< [node] nodal masses times their factor; nullptr: zero
-    const Real* z;     ///< read only with `mass`
+    const std::int32_t* slot_end;  ///< [block]
+    const Real* mass;              ///< [node] nodal masses times their factor; nullptr: zero
+    const Real* z;                 ///< read only with `mass`
     Real* y;
     double* quadratic;  ///< [block]; nullptr: not wanted
     bool clear_slots;

@@ -38,7 +38,7 @@ void open_block(const OpenArguments<typename P::Real>& a, int block) {
         if (a.quadratic != nullptr) a.quadratic[block] = static_cast<double>(sum(quadratic));
     }
     if (!a.clear_slots) return;
-    for (std::int64_t slot = a.slot_begin[block]; slot < a.slot_begin[block + 1]; ++slot) zero.store(a.y + 4 * slot);
+    for (std::int64_t slot = a.slot_begin[block]; slot < a.slot_end[block]; ++slot) zero.store(a.y + 4 * slot);
 }
 
 template <class P>

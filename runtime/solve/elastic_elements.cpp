@@ -153,6 +153,7 @@ void ElasticElements<Real>::scatter(Scheduler& scheduler, bool is_wanted, const 
     const kernels::ScatterPlan& plan = batches_.scatter;
     const kernels::OpenArguments<Real> open{.block_begin = numbering_->block_begin.data(),
                                             .slot_begin = plan.slot_begin().data(),
+                                            .slot_end = plan.slot_end().data(),
                                             .mass = nullptr,
                                             .z = nullptr,
                                             .y = force_.data(),

@@ -66,6 +66,7 @@ double Operator<Real>::product(Scheduler& scheduler, const Real* z) {
     const bool exclusive = plan_->strategy() == ScatterStrategy::node_gather;
     const kernels::OpenArguments<Real> open{.block_begin = numbering().block_begin.data(),
                                             .slot_begin = plan_->slot_begin().data(),
+                                            .slot_end = plan_->slot_end().data(),
                                             .mass = scaled_mass_.data(),
                                             .z = z,
                                             .y = y_.data(),

@@ -57,6 +57,7 @@ class HyperelasticElements {
     void scatter_with(const kernels::ScatterPlan& plan, AlignedVector<Real>& y, Add add) {
         const kernels::OpenArguments<Real> open{.block_begin = numbering.block_begin.data(),
                                                 .slot_begin = plan.slot_begin().data(),
+                                                .slot_end = plan.slot_end().data(),
                                                 .mass = nullptr,
                                                 .z = nullptr,
                                                 .y = y.data(),
