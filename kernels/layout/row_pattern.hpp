@@ -43,6 +43,12 @@ struct RowPattern {
     int entries() const noexcept { return chunk_entry_begin.back(); }
     /// The incidence that stands for nothing.
     std::int32_t nothing() const noexcept { return 16 * slots; }
+    /// Whether the edge at a lane of an entry is one of elements; padding, and what elements have left behind, is not.
+    bool has_elements(std::int32_t entry, int lane) const noexcept {
+        const std::int32_t first = incidence_begin[entry];
+        return first < incidence_begin[entry + 1] &&
+               incidence[static_cast<std::size_t>(2 * first) * width + lane] != nothing();
+    }
     std::size_t bytes() const noexcept;
 };
 

@@ -197,7 +197,10 @@ class BodyOf final : public DeformableBody {
             const std::int32_t node = numbering_.internal_of_user[user];
             if (std::find(numbers.begin(), numbers.end(), node) == numbers.end()) gone.push_back(node);
         }
-        for (const std::int32_t node : gone) layout.masses.push_back({.node = node});
+        for (const std::int32_t node : gone) {
+            layout.masses.push_back({.node = node});
+            kernels::SpareNodes::give_back(numbering_, node);  // it is in no aggregate any more
+        }
         for (const BodyChange::NodalMass& of_node : change.masses) {
             LayoutChange::NodalMass& mass = layout.masses.emplace_back();
             mass.node = changed.number_of(of_node.node);
@@ -207,7 +210,7 @@ class BodyOf final : public DeformableBody {
         if (!step_->change(layout)) return false;
         for (const LayoutChange::NodalMass& of_node : layout.masses) mass_[of_node.node] = of_node.mass;
         holds_.release_all();
-        for (const std::int32_t node : gone) give_back(node);
+        for (const std::int32_t node : gone) forget_node(node);
         take_nodes(change, numbers);
         ++changes_;
         return true;
@@ -476,8 +479,7 @@ class BodyOf final : public DeformableBody {
         }
     }
 
-    void give_back(std::int32_t node) {
-        kernels::SpareNodes::give_back(numbering_, node);
+    void forget_node(std::int32_t node) {
         std::fill_n(&loads_.nodal[4 * static_cast<std::size_t>(node)], 4, 0.0);
         holds_.forget(node);
         if (floor_.exists()) floor_.forget(node);

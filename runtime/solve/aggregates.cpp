@@ -1,6 +1,8 @@
 #include "lancet/runtime/solve/aggregates.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -11,11 +13,66 @@ namespace lancet::runtime {
 Aggregates::Aggregates(const kernels::NodeNumbering& numbering)
     : numbering_(&numbering),
       first_piece_(numbering.aggregates()),
+      first_of_room_(numbering.block_aggregate_begin[static_cast<std::size_t>(numbering.first_blocks())]),
+      few_(first_of_room_ > 0 ? numbering.spare_begin / (2 * first_of_room_) : 0),
       of_node_(static_cast<std::size_t>(numbering.node_count), -1),
       pieces_of_block_(static_cast<std::size_t>(numbering.blocks())) {
     for (std::int32_t a = 0; a < first_piece_; ++a) {
         std::fill(of_node_.begin() + numbering.aggregate_begin[a], of_node_.begin() + numbering.aggregate_begin[a + 1],
                   a);
+    }
+}
+
+int Aggregates::nodes_of(std::int32_t number) const {
+    int nodes = 0;
+    for_each_node(number, [&](std::int32_t) { ++nodes; });
+    return nodes;
+}
+
+void Aggregates::choose_leaders(std::span<const Link> links) {
+    const auto numbers = static_cast<std::size_t>(count());
+    std::vector<int> nodes(numbers);
+    leader_.assign(numbers, -1);
+    // The others always have nodes, and lead.
+    std::iota(leader_.begin(), leader_.begin() + first_of_room_, 0);
+    for (std::int32_t a = first_of_room_; a < count(); ++a) {
+        nodes[a] = nodes_of(a);
+        if (nodes[a] > 0 && nodes[a] >= few_) leader_[a] = a;
+    }
+    let_follow(links, nodes);
+    followers_.assign(numbers, {});
+    for (std::int32_t a = 0; a < count(); ++a) {
+        if (leader_[a] >= 0 && leader_[a] != a) followers_[leader_[a]].push_back(a);
+    }
+}
+
+/// Finds leaders for what has nodes but none yet, the largest first.
+void Aggregates::let_follow(std::span<const Link> links, std::span<const int> nodes) {
+    std::vector<std::vector<std::pair<std::int32_t, int>>> neighbours(nodes.size());
+    for (const Link& link : links) {
+        if (link.first == link.second) continue;
+        neighbours[link.first].emplace_back(link.second, link.edges);
+        neighbours[link.second].emplace_back(link.first, link.edges);
+    }
+    std::vector<std::int32_t> left;
+    for (std::int32_t a = first_of_room_; a < count(); ++a) {
+        if (nodes[a] > 0 && leader_[a] < 0) left.push_back(a);
+    }
+    std::ranges::stable_sort(left, std::ranges::greater(), [&](std::int32_t a) { return nodes[a]; });
+    const auto finds_leader = [&](std::int32_t a) {
+        std::map<std::int32_t, int> edges;  // that it has in common with each leader and its followers
+        for (const auto& [other, common] : neighbours[a]) {
+            if (leader_[other] >= 0) edges[leader_[other]] += common;
+        }
+        const auto most = std::ranges::max_element(edges, {}, [](const auto& entry) { return entry.second; });
+        if (most != edges.end() && most->second > 0) leader_[a] = most->first;
+        return leader_[a] >= 0;
+    };
+    while (!left.empty()) {
+        if (std::erase_if(left, finds_leader) > 0) continue;
+        // These hang on nothing but each other.
+        leader_[left.front()] = left.front();
+        left.erase(left.begin());
     }
 }
 
@@ -53,12 +110,8 @@ std::vector<Aggregates::Piece> Aggregates::severed(const kernels::RowPattern& pa
              ++chunk) {
             for (std::int32_t entry = pattern.chunk_entry_begin[chunk]; entry < pattern.chunk_entry_begin[chunk + 1];
                  ++entry) {
-                if (pattern.incidence_begin[entry] == pattern.incidence_begin[entry + 1]) continue;
-                const std::int32_t* elements =
-                    pattern.incidence.data() +
-                    static_cast<std::ptrdiff_t>(pattern.incidence_begin[entry]) * 2 * pattern.width;
                 for (int lane = 0; lane < pattern.width; ++lane) {
-                    if (elements[lane] == pattern.nothing()) continue;
+                    if (!pattern.has_elements(entry, lane)) continue;
                     const std::int32_t a = pattern.row[chunk * pattern.width + lane] / 4,
                                        b = pattern.column[entry * pattern.width + lane] / 4;
                     if (!is_own(a) || !is_own(b) || range_of(a) != range_of(b)) continue;
@@ -124,6 +177,8 @@ std::size_t Aggregates::bytes() const noexcept {
     std::size_t bytes = kernels::heap_bytes(of_node_) + kernels::heap_bytes(pieces_);
     for (const Piece& piece : pieces_) bytes += kernels::heap_bytes(piece.nodes);
     for (const auto& numbers : pieces_of_block_) bytes += kernels::heap_bytes(numbers);
+    bytes += kernels::heap_bytes(leader_) + kernels::heap_bytes(followers_);
+    for (const auto& numbers : followers_) bytes += kernels::heap_bytes(numbers);
     return bytes;
 }
 

@@ -14,8 +14,12 @@ namespace lancet::runtime {
 /// numbers, which a cut in place leaves as it is. Where its nodes do not hang together any more, the largest piece goes
 /// on as the aggregate, and every other one is a further aggregate with a list of nodes. So none straddles a cut.
 ///
-/// Aggregates have the numbers of the numbering, those of its room included; pieces follow, and keep their numbers as
-/// long as they are what they are.
+/// Aggregates have the numbers of the numbering, those of its room included; pieces come behind them, and keep their
+/// numbers as long as they are what they are.
+///
+/// Not every number stands for rigid motions of its own. What has few nodes, pieces and aggregates of the room, follows
+/// the larger one that it hangs on most: both move as one, like in a body that is laid out anew. The one that is
+/// followed is their leader; what has no node has none.
 class Aggregates {
   public:
     struct Piece {
@@ -25,6 +29,18 @@ class Aggregates {
     };
 
     explicit Aggregates(const kernels::NodeNumbering& numbering);
+
+    /// How many edges two numbers have in common.
+    struct Link {
+        std::int32_t first = 0;
+        std::int32_t second = 0;
+        int edges = 0;
+    };
+    /// Chooses leaders anew, where `links` are all there are between the present numbers.
+    void choose_leaders(std::span<const Link> links);
+    /// [number] itself, or what it follows, or -1 where it has no node.
+    std::span<const std::int32_t> leader() const noexcept { return leader_; }
+    bool is_leader(std::int32_t number) const { return leader_[static_cast<std::size_t>(number)] == number; }
 
     /// Finds the pieces of some blocks anew, from the edges that have elements. Returns the blocks in which aggregates
     /// are not what they were, ascending. `pattern` must be of content upper_edges.
@@ -68,6 +84,21 @@ class Aggregates {
         }
     }
 
+    /// The same for all nodes that move with a leader: its own, and those of what follows it.
+    template <class Visit>
+    void for_each_node_led(std::int32_t leader, const Visit& visit) const {
+        for_each_node(leader, visit);
+        for (const std::int32_t follower : followers_[static_cast<std::size_t>(leader)]) for_each_node(follower, visit);
+    }
+
+    /// Calls visit(number, leader) for all that follow, ascending by leader.
+    template <class Visit>
+    void for_each_follower(const Visit& visit) const {
+        for (std::size_t leader = 0; leader < followers_.size(); ++leader) {
+            for (const std::int32_t follower : followers_[leader]) visit(follower, static_cast<std::int32_t>(leader));
+        }
+    }
+
     std::size_t bytes() const noexcept;
 
   private:
@@ -80,12 +111,19 @@ class Aggregates {
         return a < first_piece_ ? a : pieces_[static_cast<std::size_t>(a - first_piece_)].aggregate;
     }
 
+    int nodes_of(std::int32_t number) const;
+    void let_follow(std::span<const Link> links, std::span<const int> nodes);
+
     const kernels::NodeNumbering* numbering_;
     std::int32_t first_piece_;
+    std::int32_t first_of_room_;  ///< aggregate
+    int few_;                     ///< nodes, half of what aggregates have on average: what has less follows
     std::vector<std::int32_t> of_node_;
     std::vector<Piece> pieces_;                               ///< without nodes where the number is free
     std::vector<std::vector<std::int32_t>> pieces_of_block_;  ///< their numbers
     std::vector<std::int32_t> free_numbers_;
+    std::vector<std::int32_t> leader_;                  ///< [number]
+    std::vector<std::vector<std::int32_t>> followers_;  ///< [number] what follows it, ascending
 };
 
 }  // namespace lancet::runtime

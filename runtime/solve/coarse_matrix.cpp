@@ -54,7 +54,7 @@ void CoarseMatrix<Real>::take_up_edges(int block) {
         if (last < pairs.size() && is_pair(pairs[last])) return static_cast<std::int32_t>(last);
         const auto found = std::find_if(pairs.begin(), pairs.end(), is_pair);
         last = static_cast<std::size_t>(found - pairs.begin());
-        if (found == pairs.end()) pairs.push_back({a, b, RigidMatrix::Zero(), RigidMatrix::Zero()});
+        if (found == pairs.end()) pairs.push_back({a, b, 0, RigidMatrix::Zero(), RigidMatrix::Zero()});
         return static_cast<std::int32_t>(last);
     };
     const auto is_own = [&](std::int32_t row) {
@@ -69,10 +69,21 @@ void CoarseMatrix<Real>::take_up_edges(int block) {
                 const std::int32_t a = aggregates_->of_node()[row], b = aggregates_->of_node()[column];
                 // The room also has edges within aggregates of other blocks.
                 if (a == b && (row == column || is_own(row))) continue;
-                crossing.push_back({entry * 9 * pattern.width + lane, row, column, b >= 0 ? pair_of(a, b) : -1});
+                const std::int32_t pair = b >= 0 ? pair_of(a, b) : -1;
+                crossing.push_back({entry * 9 * pattern.width + lane, row, column, pair});
+                if (pair >= 0 && pattern.has_elements(entry, lane)) ++pairs[static_cast<std::size_t>(pair)].edges;
             }
         }
     }
+}
+
+template <class Real>
+std::vector<Aggregates::Link> CoarseMatrix<Real>::links() const {
+    std::vector<Aggregates::Link> links;
+    for (const auto& pairs : pairs_) {
+        for (const AggregatePair& pair : pairs) links.push_back({pair.first, pair.second, pair.edges});
+    }
+    return links;
 }
 
 template <class Real>
@@ -165,12 +176,17 @@ void CoarseMatrix<Real>::assemble(Scheduler& scheduler, const Real* offset, cons
     scheduler.for_each_block(numbering_->first_blocks(), [&](int block) { accumulate(offset, scaled_mass, block); });
     // The room also has edges of aggregates of other blocks.
     if (numbering_->has_room()) accumulate(offset, scaled_mass, numbering_->first_blocks());
+    // Motions of what follows are about the centre of its leader already.
+    const std::span<const std::int32_t> leader = aggregates_->leader();
+    const auto diagonal_of = [&](std::int32_t a) -> RigidMatrix& { return diagonal_[static_cast<std::size_t>(a)]; };
+    aggregates_->for_each_follower(
+        [&](std::int32_t follower, std::int32_t led_by) { diagonal_of(led_by) += diagonal_of(follower); });
     for (const auto& pairs : pairs_) {
         for (const AggregatePair& pair : pairs) {
-            RigidMatrix &first = diagonal_[static_cast<std::size_t>(pair.first)],
-                        &second = diagonal_[static_cast<std::size_t>(pair.second)];
-            second += pair.second_diagonal;
-            if (pair.first == pair.second) first += pair.coupling + pair.coupling.transpose();
+            const std::int32_t first = leader[pair.first], second = leader[pair.second];
+            if (first < 0 || second < 0) continue;
+            diagonal_of(second) += pair.second_diagonal;
+            if (first == second) diagonal_of(first) += pair.coupling + pair.coupling.transpose();
         }
     }
     for (RigidMatrix& diagonal : diagonal_) {

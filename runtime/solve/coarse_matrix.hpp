@@ -16,6 +16,7 @@ namespace lancet::runtime {
 struct AggregatePair {
     std::int32_t first;
     std::int32_t second;
+    int edges;                    ///< of elements
     RigidMatrix coupling;         ///< (first, second)
     RigidMatrix second_diagonal;  ///< a share of (second, second)
 };
@@ -38,13 +39,17 @@ class CoarseMatrix {
     /// The blocks whose aggregates the pairs of a block of nodes are of.
     std::vector<int> borders(int block) const;
 
-    /// `offset`: xyz_, see RigidModes; `scaled_mass`: nodal masses times their factor.
+    /// How many edges the aggregates have in common, pair by pair.
+    std::vector<Aggregates::Link> links() const;
+
+    /// `offset`: xyz_, see RigidModes; `scaled_mass`: nodal masses times their factor. What follows another aggregate
+    /// is added to its block.
     void assemble(Scheduler& scheduler, const Real* offset, const Real* scaled_mass);
 
     /// [aggregate]
     const std::vector<RigidMatrix>& diagonal() const noexcept { return diagonal_; }
     std::vector<RigidMatrix>& diagonal() noexcept { return diagonal_; }
-    /// [block of nodes]. Those of an aggregate with itself are in its diagonal, too.
+    /// [block of nodes]. Those between what moves as one are in its diagonal, too.
     const std::vector<std::vector<AggregatePair>>& pairs() const noexcept { return pairs_; }
     std::vector<std::vector<AggregatePair>>& pairs() noexcept { return pairs_; }
 

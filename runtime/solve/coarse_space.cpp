@@ -42,12 +42,13 @@ CoarseSpace<Real>::CoarseSpace(CoarseSpace&&) noexcept = default;
 
 template <class Real>
 void CoarseSpace<Real>::lay_out() {
-    const int aggregates = parts_->aggregates.count();
-    restricted_.assign(static_cast<std::size_t>(rigid_motions * aggregates), 0.0);
+    auto& [edges, aggregates, modes, matrix, factor] = *parts_;
+    aggregates.choose_leaders(matrix.links());
+    restricted_.assign(static_cast<std::size_t>(rigid_motions * aggregates.count()), 0.0);
     correction_.assign(restricted_.size(), Real(0));
-    parts_->modes.resize(aggregates);
-    parts_->matrix.resize(aggregates);
-    parts_->factor.lay_out(aggregates, parts_->matrix.pairs());
+    modes.resize(aggregates.count());
+    matrix.resize(aggregates.count());
+    factor.lay_out(aggregates.leader(), matrix.pairs());
 }
 
 template <class Real>
@@ -68,18 +69,7 @@ void CoarseSpace<Real>::change(std::span<const int> blocks) {
         if (is_old[block]) matrix.take_up_edges(static_cast<int>(block));
     }
     is_fresh_ = false;
-    // The pattern of a sparse matrix holds as long as it has all pairs.
-    bool holds_all = unknowns() == rigid_motions * aggregates.count();
-    for (std::size_t block = 0; block < count && holds_all; ++block) {
-        if (!is_old[block]) continue;
-        for (const AggregatePair& pair : matrix.pairs()[block]) {
-            holds_all = holds_all && factor.holds(pair.first, pair.second);
-        }
-    }
-    if (!holds_all) return lay_out();
-    // Numbers without nodes have no modes.
-    modes.clear();
-    matrix.clear();
+    lay_out();
 }
 
 template <class Real>
@@ -108,11 +98,21 @@ void CoarseSpace<Real>::solve() {
         std::fill(correction_.begin(), correction_.end(), Real(0));
         return;
     }
+    // Forces on followers are about the centre of their leader already.
+    aggregates.for_each_follower([&](std::int32_t follower, std::int32_t leader) {
+        for (int k = 0; k < rigid_motions; ++k) {
+            restricted_[rigid_motions * leader + k] += restricted_[rigid_motions * follower + k];
+        }
+    });
     factor.solve(modes.basis(), restricted_);
-    for (int a = 0; a < aggregates.count(); ++a) {
-        const RigidVector motion = factor.motion(modes.basis(), a);
-        for (int k = 0; k < rigid_motions; ++k) correction_[rigid_motions * a + k] = static_cast<Real>(motion[k]);
+    for (std::size_t place = 0; place < factor.leaders().size(); ++place) {
+        const RigidVector motion = factor.motion(modes.basis(), place);
+        Real* correction = &correction_[rigid_motions * factor.leaders()[place]];
+        for (int k = 0; k < rigid_motions; ++k) correction[k] = static_cast<Real>(motion[k]);
     }
+    aggregates.for_each_follower([&](std::int32_t follower, std::int32_t leader) {
+        std::copy_n(&correction_[rigid_motions * leader], rigid_motions, &correction_[rigid_motions * follower]);
+    });
     for (int block = 0; block < numbering_->blocks(); ++block) {
         aggregates.for_each_piece(block, [&](std::int32_t number, const Aggregates::Piece& piece) {
             Real* motion = &correction_[rigid_motions * number];

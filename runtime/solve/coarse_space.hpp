@@ -11,7 +11,8 @@
 namespace lancet::runtime {
 
 /// The rigid-body modes of the aggregates of a numbering, as an additive coarse space: correction = Z (Z^T A Z)^-1 Z^T
-/// r. A cut in place severs aggregates: their pieces have modes of their own (Aggregates).
+/// r. A cut in place severs aggregates; for what comes of that, and which of it have modes of their own, see
+/// Aggregates.
 ///
 /// Z holds translations and rotations about each aggregate's current centre, orthonormalised; modes that an aggregate
 /// does not have are left out (RigidModes). Z^T A Z is gathered by CoarseMatrix and solved with by CoarseFactor.
@@ -50,6 +51,7 @@ class CoarseSpace {
     template <class Accumulate>
     double move_pieces(const Accumulate* r, Real* z, int block) const;
 
+    /// Of the coarse matrix.
     int unknowns() const noexcept;
     std::size_t bytes() const noexcept;
 
@@ -62,7 +64,7 @@ class CoarseSpace {
     /// Aggregates, modes, matrix and factor: with types of Eigen, which users of the library need not have.
     struct Parts;
 
-    /// Makes places for all aggregates and pieces, and lays out the factor.
+    /// Makes places for all aggregates and pieces, chooses which lead, and lays out the factor.
     void lay_out();
     bool factorise();
 

@@ -31,28 +31,30 @@ void RigidModes<Real>::clear() {
 template <class Real>
 void RigidModes<Real>::set(Scheduler& scheduler, const double* positions) {
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
-        aggregates_->for_each_of_block(block, [&](std::int32_t a) { set_aggregate(a, positions); });
+        aggregates_->for_each_of_block(block, [&](std::int32_t a) {
+            if (aggregates_->is_leader(a)) set_leader(a, positions);
+        });
     });
 }
 
 template <class Real>
-void RigidModes<Real>::set_aggregate(std::int32_t aggregate, const double* positions) {
+void RigidModes<Real>::set_leader(std::int32_t leader, const double* positions) {
     Vector3d centre = Vector3d::Zero();
     int count = 0;
-    aggregates_->for_each_node(aggregate, [&](std::int32_t node) {
+    aggregates_->for_each_node_led(leader, [&](std::int32_t node) {
         centre += nodal_vector(positions, node);
         ++count;
     });
     centre /= std::max(count, 1);
     Matrix3d inertia = Matrix3d::Zero();
-    aggregates_->for_each_node(aggregate, [&](std::int32_t node) {
+    aggregates_->for_each_node_led(leader, [&](std::int32_t node) {
         const std::int64_t at = 4 * static_cast<std::int64_t>(node);
         const Vector3d r = nodal_vector(positions, node) - centre;
         for (int axis = 0; axis < 3; ++axis) offset_[at + axis] = static_cast<Real>(r[axis]);
         inertia += r.squaredNorm() * Matrix3d::Identity() - r * r.transpose();
     });
     // Rotations about principal axes of no extent move nothing: a node alone has none, collinear nodes two.
-    RigidMatrix& basis = basis_[static_cast<std::size_t>(aggregate)];
+    RigidMatrix& basis = basis_[static_cast<std::size_t>(leader)];
     basis.setZero();
     if (count == 0) return;
     basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
@@ -73,11 +75,12 @@ template <class Real>
 double RigidModes<Real>::change_of_block(int block, const double* positions) const {
     double largest = 0;
     aggregates_->for_each_of_block(block, [&](std::int32_t a) {
+        if (!aggregates_->is_leader(a)) return;
         // sum |d - mean d|^2 for d = x - r' is sum |d|^2 - |sum d|^2 / n, since the offsets r' have mean zero.
         Vector3d origin = Vector3d::Zero(), sum = Vector3d::Zero();
         double squares = 0, size = 0;
         int count = 0;
-        aggregates_->for_each_node(a, [&](std::int32_t node) {
+        aggregates_->for_each_node_led(a, [&](std::int32_t node) {
             const Vector3d r = nodal_vector(offset_.data(), node), x = nodal_vector(positions, node);
             if (count++ == 0) origin = x;
             const Vector3d d = x - origin - r;

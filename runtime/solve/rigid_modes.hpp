@@ -14,7 +14,7 @@ namespace lancet::runtime {
 
 /// The rigid-body modes of aggregates at some positions: offsets of the nodes from the centres of their aggregates, and
 /// what orthonormalises the motions of an aggregate, without those that move nothing (one node, collinear or collapsed
-/// nodes).
+/// nodes). What follows another aggregate (see Aggregates) counts to it.
 template <class Real>
 class RigidModes {
   public:
@@ -30,17 +30,17 @@ class RigidModes {
     /// How much an aggregate has changed since at most: see CoarseSpace::change.
     double change(Scheduler& scheduler, const double* positions);
 
-    /// xyz_, from the centre of the aggregate or piece.
+    /// xyz_, from the centre of all that moves with the node.
     const kernels::AlignedVector<Real>& offset() const noexcept { return offset_; }
     kernels::AlignedVector<Real>& offset() noexcept { return offset_; }
-    /// [aggregate] from orthonormal modes to motions; zero columns for modes that are left out.
+    /// [aggregate] from orthonormal modes to motions; zero columns for modes that are left out, and what follows.
     const std::vector<RigidMatrix>& basis() const noexcept { return basis_; }
     std::vector<RigidMatrix>& basis() noexcept { return basis_; }
 
     std::size_t bytes() const noexcept { return kernels::heap_bytes(offset_) + kernels::heap_bytes(basis_); }
 
   private:
-    void set_aggregate(std::int32_t aggregate, const double* positions);
+    void set_leader(std::int32_t leader, const double* positions);
     double change_of_block(int block, const double* positions) const;
 
     const kernels::NodeNumbering* numbering_;
