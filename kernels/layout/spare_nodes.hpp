@@ -11,8 +11,9 @@ namespace lancet::kernels {
 /// the aggregates of what lies along one side of a cut are connected.
 class SpareNodes {
   public:
-    /// Aggregates of the room are small: cuts at different places should not share one.
-    static constexpr std::int32_t nodes_per_aggregate = 128;
+    /// Aggregates of the room are small: cuts at different places should not share one, and every pass takes all nodes
+    /// of those that are in use.
+    static constexpr std::int32_t nodes_per_aggregate = 32;
 
     SpareNodes() = default;
     explicit SpareNodes(const NodeNumbering& numbering) : next_fixed_(numbering.free_count) {}

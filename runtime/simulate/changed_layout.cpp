@@ -36,23 +36,52 @@ bool ChangedLayout<Real>::number_nodes() {
     for (const BodyChange::Node& node : change_->nodes) {
         numbers_.push_back(node.before < 0 ? -1 : numbering_->internal_of_user[node.before]);
     }
-    // Along elements, so that neighbours are known.
-    for (const BodyChange::Element& element : change_->elements) {
-        if (!element.is_there) continue;
-        kernels::Tetrahedron known{};
-        for (std::size_t k = 0; k < 4; ++k) known[k] = number_of(element.nodes[k]);
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (known[k] >= 0) continue;
-            const auto place = static_cast<std::size_t>(element.nodes[k] - change_->first_node);
-            if (!take(place, known)) return false;
-            known[k] = numbers_[place];
-        }
-    }
+    if (!number_along_elements()) return false;
     // A copy may have no element yet.
     for (std::size_t place = 0; place < numbers_.size(); ++place) {
         if (numbers_[place] < 0 && !take(place, {})) return false;
     }
     return true;
+}
+
+template <class Real>
+bool ChangedLayout<Real>::number_along_elements() {
+    // From what is in the room already and then from element to element, so that what hangs together comes together:
+    // each node that begins anew takes an aggregate of its own.
+    const std::span<const BodyChange::Element> elements = change_->elements;
+    const auto is_new = [&](std::int32_t node) { return number_of(node) < 0; };
+    const auto place_of = [&](std::int32_t node) { return static_cast<std::size_t>(node - change_->first_node); };
+    std::vector<std::vector<std::size_t>> elements_at(numbers_.size());
+    std::vector<std::size_t> beside_room, others;
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+        if (!elements[e].is_there || std::ranges::none_of(elements[e].nodes, is_new)) continue;
+        for (const std::int32_t node : elements[e].nodes) {
+            if (is_new(node)) elements_at[place_of(node)].push_back(e);
+        }
+        const bool is_beside = std::ranges::any_of(elements[e].nodes, [&](std::int32_t node) {
+            const std::int32_t number = number_of(node);
+            return number >= numbering_->spare_begin && numbering_->is_free(number);
+        });
+        (is_beside ? beside_room : others).push_back(e);
+    }
+    std::vector<std::size_t> next;
+    const auto number_from = [&](std::size_t first) {
+        next.assign(1, first);
+        for (std::size_t at = 0; at < next.size(); ++at) {
+            const BodyChange::Element& element = elements[next[at]];
+            kernels::Tetrahedron known{};
+            for (std::size_t k = 0; k < 4; ++k) known[k] = number_of(element.nodes[k]);
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (known[k] >= 0) continue;
+                const std::size_t place = place_of(element.nodes[k]);
+                if (!take(place, known)) return false;
+                known[k] = numbers_[place];
+                next.insert(next.end(), elements_at[place].begin(), elements_at[place].end());
+            }
+        }
+        return true;
+    };
+    return std::ranges::all_of(beside_room, number_from) && std::ranges::all_of(others, number_from);
 }
 
 template <class Real>

@@ -35,6 +35,8 @@ class ChangedLayout {
     std::ptrdiff_t more_elements() const noexcept { return more_elements_; }
 
   private:
+    /// Gives numbers to the new nodes of elements.
+    bool number_along_elements();
     bool take(std::size_t place, std::span<const std::int32_t> neighbours);
     std::int32_t& slot_of(const BodyChange::Element& element);
 

@@ -94,6 +94,7 @@ class CutBar {
     int unknowns() { return preconditioner_.coarse()->unknowns(); }
     /// Of the numbering without its room.
     int aggregates() const { return numbering_.block_aggregate_begin[numbering_.first_blocks()]; }
+    int aggregates_of_room() const { return numbering_.block_aggregate_begin.back() - aggregates(); }
     Eigen::Index size() const { return 3 * static_cast<Eigen::Index>(nodes_.size()); }
     const std::vector<mesh::Point>& nodes() const { return nodes_; }
 
@@ -238,6 +239,14 @@ TEST_P(LedAggregates, NoneStraddlesACut) {
     const auto is_right = [&](std::size_t node) { return node >= before || bar.nodes()[node][0] > 0.5 + 1e-9; };
     expect_exact_for(bar, rigid_motions_of(bar, is_right));
     expect_exact_for(bar, rigid_motions_of(bar, [&](std::size_t node) { return !is_right(node); }));
+}
+
+// Twenty copies are one rim, and fit into one aggregate of the room.
+TEST(LedAggregates, WhatHangsTogetherComesTogether) {
+    CutBar bar(60);
+    EXPECT_EQ(bar.aggregates_of_room(), 0);
+    ASSERT_NO_FATAL_FAILURE(bar.cut(0.5, -1));
+    EXPECT_EQ(bar.aggregates_of_room(), 1);
 }
 
 // Twelve copies have few nodes where aggregates have some sixty; they follow, and so does what is severed unless it is
