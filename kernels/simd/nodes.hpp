@@ -89,4 +89,57 @@ LANCET_INLINE Vector3<P> load_differences(const double* nodal, const std::int32_
     return {c[0], c[1], c[2]};
 }
 
+// Rows are three numbers without a spare one, as points lie in memory. Those that are read or written here are named by
+// where they begin, 3 times their number.
+
+/// From the rows of one vertex in every lane to others: differences in double, rounded to the scalar of the pack.
+template <class P>
+class RowDifferences {
+    using Isa = typename P::Isa;
+
+  public:
+    LANCET_INLINE RowDifferences(const double* rows, const std::int32_t* origin) : rows_(rows) {
+        for (int lane = 0; lane < P::width; ++lane) origin_[lane] = load(origin[lane]);
+    }
+
+    LANCET_INLINE Vector3<P> to(const std::int32_t* place) const {
+        Quad<Isa, typename P::Real> quads[P::width];
+        for (int lane = 0; lane < P::width; ++lane) {
+            const auto difference = load(place[lane]) - origin_[lane];
+            if constexpr (sizeof(typename P::Real) == 4) {
+                quads[lane] = narrow(difference);
+            } else {
+                quads[lane] = difference;
+            }
+        }
+        P c[4];
+        transpose(quads, c);
+        return {c[0], c[1], c[2]};
+    }
+
+  private:
+    LANCET_INLINE Quad<Isa, double> load(std::int32_t place) const {
+        return Quad<Isa, double>::load_three(rows_ + static_cast<std::int64_t>(place));
+    }
+
+    const double* rows_;
+    Quad<Isa, double> origin_[P::width];
+};
+
+/// Writes rows of doubles, and nothing beside them.
+template <class P>
+LANCET_INLINE void store_rows(double* rows, const std::int32_t* place, Vector3<P> v) {
+    Quad<typename P::Isa, typename P::Real> quads[P::width];
+    const P c[4] = {v.x, v.y, v.z, P(typename P::Real(0))};
+    transpose(c, quads);
+    for (int lane = 0; lane < P::width; ++lane) {
+        double* const row = rows + static_cast<std::int64_t>(place[lane]);
+        if constexpr (sizeof(typename P::Real) == 4) {
+            widen(quads[lane]).store_three(row);
+        } else {
+            quads[lane].store_three(row);
+        }
+    }
+}
+
 }  // namespace lancet::kernels

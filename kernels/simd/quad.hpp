@@ -23,6 +23,11 @@ struct Quad {
     LANCET_INLINE void store(Real* destination) const {
         for (int i = 0; i < 4; ++i) destination[i] = number[i];
     }
+    /// Reads and writes three numbers and nothing behind them; the fourth is zero.
+    LANCET_INLINE static Quad load_three(const Real* source) { return {{source[0], source[1], source[2], Real(0)}}; }
+    LANCET_INLINE void store_three(Real* destination) const {
+        for (int i = 0; i < 3; ++i) destination[i] = number[i];
+    }
     LANCET_INLINE friend Quad operator+(Quad a, Quad b) {
         for (int i = 0; i < 4; ++i) a.number[i] += b.number[i];
         return a;
@@ -38,6 +43,12 @@ template <class Isa>
 LANCET_INLINE Quad<Isa, float> narrow(Quad<Isa, double> a) {
     return {{static_cast<float>(a.number[0]), static_cast<float>(a.number[1]), static_cast<float>(a.number[2]),
              static_cast<float>(a.number[3])}};
+}
+
+/// The same numbers in double.
+template <class Isa>
+LANCET_INLINE Quad<Isa, double> widen(Quad<Isa, float> a) {
+    return {{a.number[0], a.number[1], a.number[2], a.number[3]}};
 }
 
 /// Transposes `width` quads into packs: components[c] holds number c of every quad.

@@ -23,12 +23,22 @@ struct Quad<isa::neon, double> {
         vst1q_f64(destination, low);
         vst1q_f64(destination + 2, high);
     }
+    LANCET_INLINE static Quad load_three(const double* source) {
+        return {vld1q_f64(source), vld1q_lane_f64(source + 2, vdupq_n_f64(0), 0)};
+    }
+    LANCET_INLINE void store_three(double* destination) const {
+        vst1q_f64(destination, low);
+        vst1q_lane_f64(destination + 2, high, 0);
+    }
     LANCET_INLINE friend Quad operator+(Quad a, Quad b) { return {vaddq_f64(a.low, b.low), vaddq_f64(a.high, b.high)}; }
     LANCET_INLINE friend Quad operator-(Quad a, Quad b) { return {vsubq_f64(a.low, b.low), vsubq_f64(a.high, b.high)}; }
 };
 
 LANCET_INLINE Quad<isa::neon, float> narrow(Quad<isa::neon, double> a) {
     return {vcvt_high_f32_f64(vcvt_f32_f64(a.low), a.high)};
+}
+LANCET_INLINE Quad<isa::neon, double> widen(Quad<isa::neon, float> a) {
+    return {vcvt_f64_f32(vget_low_f32(a.number)), vcvt_high_f64_f32(a.number)};
 }
 
 /// The 4 x 4 transpose of floats.

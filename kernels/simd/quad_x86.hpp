@@ -31,6 +31,13 @@ struct Quad<isa::sse2, double> {
         _mm_storeu_pd(destination, low);
         _mm_storeu_pd(destination + 2, high);
     }
+    LANCET_INLINE static Quad load_three(const double* source) {
+        return {_mm_loadu_pd(source), _mm_load_sd(source + 2)};
+    }
+    LANCET_INLINE void store_three(double* destination) const {
+        _mm_storeu_pd(destination, low);
+        _mm_store_sd(destination + 2, high);
+    }
     LANCET_INLINE friend Quad operator+(Quad a, Quad b) {
         return {_mm_add_pd(a.low, b.low), _mm_add_pd(a.high, b.high)};
     }
@@ -41,6 +48,9 @@ struct Quad<isa::sse2, double> {
 
 LANCET_INLINE Quad<isa::sse2, float> narrow(Quad<isa::sse2, double> a) {
     return {{_mm_movelh_ps(_mm_cvtpd_ps(a.low), _mm_cvtpd_ps(a.high))}};
+}
+LANCET_INLINE Quad<isa::sse2, double> widen(Quad<isa::sse2, float> a) {
+    return {_mm_cvtps_pd(a.number), _mm_cvtps_pd(_mm_movehl_ps(a.number, a.number))};
 }
 
 LANCET_INLINE void transpose(const Quad<isa::sse2, float> (&q)[4], Pack<isa::sse2, float> (&c)[4]) {
@@ -80,6 +90,13 @@ struct DoubleQuad {
 
     LANCET_INLINE static Quad<Isa, double> load(const double* source) { return {{_mm256_loadu_pd(source)}}; }
     LANCET_INLINE void store(double* destination) const { _mm256_storeu_pd(destination, number); }
+    LANCET_INLINE static Quad<Isa, double> load_three(const double* source) {
+        return {{_mm256_maskload_pd(source, _mm256_set_epi64x(0, -1, -1, -1))}};
+    }
+    LANCET_INLINE void store_three(double* destination) const {
+        _mm_storeu_pd(destination, _mm256_castpd256_pd128(number));
+        _mm_store_sd(destination + 2, _mm256_extractf128_pd(number, 1));
+    }
     LANCET_INLINE friend Quad<Isa, double> operator+(Quad<Isa, double> a, Quad<Isa, double> b) {
         return {{_mm256_add_pd(a.number, b.number)}};
     }
@@ -95,6 +112,9 @@ struct Quad<isa::avx2, double> : DoubleQuad<isa::avx2> {};
 
 LANCET_INLINE Quad<isa::avx2, float> narrow(Quad<isa::avx2, double> a) {
     return {{_mm256_cvtpd_ps(a.number)}};
+}
+LANCET_INLINE Quad<isa::avx2, double> widen(Quad<isa::avx2, float> a) {
+    return {{_mm256_cvtps_pd(a.number)}};
 }
 
 /// The 4 x 4 transpose within each 128-bit part of four registers.
@@ -163,6 +183,9 @@ struct Quad<isa::avx512, double> : DoubleQuad<isa::avx512> {};
 
 LANCET_INLINE Quad<isa::avx512, float> narrow(Quad<isa::avx512, double> a) {
     return {{_mm256_cvtpd_ps(a.number)}};
+}
+LANCET_INLINE Quad<isa::avx512, double> widen(Quad<isa::avx512, float> a) {
+    return {{_mm256_cvtps_pd(a.number)}};
 }
 
 /// The 4 x 4 transpose within each 128-bit part of four registers.

@@ -108,6 +108,33 @@ TEST_P(NodesTest, DifferencesAreFormedInDouble) {
     });
 }
 
+// Rows have no spare number: of the last one nothing behind it may be read, or written.
+TEST_P(NodesTest, RowsAreReadAndWrittenToTheirEnds) {
+    for_each_scalar([]<class Real>(const SimdProbe<Real>& probe) {
+        std::vector<double> rows(3 * nodes);
+        for (int i = 0; i < 3 * nodes; ++i) rows[i] = 1e6 + 1e-6 * std::sin(1.0 + i);
+        auto index = distinct(probe.width);
+        std::vector<std::int32_t> origin(probe.width);
+        for (int lane = 0; lane < probe.width; ++lane) {
+            index[lane] = index[lane] / 4 * 3;
+            origin[lane] = 3 * ((lane * 5 + 1) % nodes);
+        }
+        index.back() = 3 * (nodes - 1);
+        std::vector<Real> lanes(3 * probe.width);
+        probe.row_differences(rows.data(), index.data(), origin.data(), lanes.data());
+        auto written = rows, right = rows;
+        probe.store_rows(written.data(), index.data(), lanes.data());
+        for (int c = 0; c < 3; ++c) {
+            for (int lane = 0; lane < probe.width; ++lane) {
+                const double difference = rows[index[lane] + c] - rows[origin[lane] + c];
+                EXPECT_EQ(lanes[c * probe.width + lane], static_cast<Real>(difference)) << "lane " << lane;
+                right[index[lane] + c] = static_cast<double>(lanes[c * probe.width + lane]);
+            }
+        }
+        EXPECT_EQ(written, right);
+    });
+}
+
 INSTANTIATE_TEST_SUITE_P(InstructionSets, NodesTest, ::testing::ValuesIn(compiled_instruction_sets()), set_name);
 
 }  // namespace lancet::kernels::test

@@ -44,6 +44,8 @@ struct SimdProbe {
     void (*store_consecutive)(Real* nodal, const Real* lanes);
     void (*add_to_nodes)(Real* nodal, const std::int32_t* index, const Real* lanes);
     void (*load_differences)(const double* nodal, const std::int32_t* index, const std::int32_t* origin, Real* lanes);
+    void (*row_differences)(const double* rows, const std::int32_t* index, const std::int32_t* origin, Real* lanes);
+    void (*store_rows)(double* rows, const std::int32_t* index, const Real* lanes);
 };
 
 /// The table of an instruction set that is compiled in and executable.

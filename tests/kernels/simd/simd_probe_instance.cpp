@@ -112,10 +112,17 @@ struct Probe {
     static void differences(const double* nodal, const std::int32_t* index, const std::int32_t* origin, Real* lanes) {
         put(load_differences<P>(nodal, index, origin), lanes);
     }
+    static void differences_of_rows(const double* rows, const std::int32_t* index, const std::int32_t* origin,
+                                    Real* lanes) {
+        put(RowDifferences<P>(rows, origin).to(index), lanes);
+    }
+    static void store_indexed_rows(double* rows, const std::int32_t* index, const Real* lanes) {
+        store_rows<P>(rows, index, get(lanes));
+    }
 
-    static constexpr SimdProbe<Real> table{P::width,    &apply_to,     &compare_these, &sum_of,
-                                           &largest_of, &load_indexed, &load_row,      &store_indexed,
-                                           &store_row,  &add_indexed,  &differences};
+    static constexpr SimdProbe<Real> table{
+        P::width,       &apply_to,  &compare_these, &sum_of,      &largest_of,          &load_indexed,      &load_row,
+        &store_indexed, &store_row, &add_indexed,   &differences, &differences_of_rows, &store_indexed_rows};
 };
 
 }  // namespace
