@@ -11,6 +11,7 @@
 #include "lancet/kernels/peak/peak_kernels_simd.hpp"
 #include "lancet/kernels/rotation/rotation_kernels_simd.hpp"
 #include "lancet/kernels/simd/pack.hpp"
+#include "lancet/kernels/surface/normal_kernels_simd.hpp"
 #include "lancet/kernels/vector/vector_kernels_simd.hpp"
 
 namespace lancet::kernels {
@@ -29,6 +30,7 @@ constexpr KernelSet<Real> make_kernel_set(InstructionSet instruction_set) {
             .coarse = make_coarse_kernels<P>(),
             .vector = make_vector_kernels<P, P>(),
             .vector_mixed = make_vector_kernels<P, Pack<Isa, double>>(),
+            .normals = make_normal_kernels<Pack<Isa, float>>(),
             .peak = make_peak_kernels<P>()};
 }
 

@@ -8,6 +8,7 @@
 #include "lancet/kernels/operator/operator_kernels.hpp"
 #include "lancet/kernels/peak/peak_kernels.hpp"
 #include "lancet/kernels/rotation/rotation_kernels.hpp"
+#include "lancet/kernels/surface/normal_kernels.hpp"
 #include "lancet/kernels/vector/vector_kernels.hpp"
 
 namespace lancet::kernels {
@@ -26,6 +27,7 @@ struct KernelSet {
     CoarseKernels<Real> coarse;
     VectorKernels<Real, Real> vector;
     VectorKernels<Real, double> vector_mixed;  ///< operator in Real, solution and residual in double
+    NormalKernels normals;                     ///< of surfaces, in float for both
     PeakKernels<Real> peak;                    ///< the machine's limit, to stand beside what is reached
 };
 
