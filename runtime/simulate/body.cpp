@@ -114,6 +114,13 @@ class BodyOf final : public DeformableBody {
         time_ = time;
     }
     void positions(std::span<Point> out) const override { gather_to_user(motion_.position, out); }
+    void positions(std::span<const std::int32_t> nodes, std::span<Point> out) const override {
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            const auto internal = numbering_.internal_of_user[static_cast<std::size_t>(nodes[k])];
+            const double* const from = &motion_.position[4 * static_cast<std::size_t>(internal)];
+            out[k] = {from[0], from[1], from[2]};
+        }
+    }
     Point position(std::int32_t node) const override {
         const std::size_t at = 4 * static_cast<std::size_t>(internal_node(node));
         return {motion_.position[at], motion_.position[at + 1], motion_.position[at + 2]};

@@ -109,6 +109,8 @@ class DeformableBody {
     /// Sets the clock by which prescribed displacements go, in seconds.
     virtual void set_time(double time) = 0;
     virtual void positions(std::span<Point> out) const = 0;
+    /// Those of some nodes, which must exist.
+    virtual void positions(std::span<const std::int32_t> nodes, std::span<Point> out) const = 0;
     virtual Point position(std::int32_t node) const = 0;
     virtual void velocities(std::span<Point> out) const = 0;
     /// Moves the body; rotations start anew from where they are. Fixed nodes keep their places.

@@ -40,6 +40,11 @@ void CarriedPoints::add(const mesh::MaterialPoint& point, const mesh::Tetrahedro
     } else {
         inside_.push_back(number);
     }
+    if (on_nodes_.size() == size()) {
+        as_nodes_.push_back(on_nodes_.back().node);
+    } else {
+        as_nodes_ = {};
+    }
 }
 
 void CarriedPoints::place(Scheduler& scheduler, std::span<const Point> positions, std::vector<Point>& places) const {

@@ -21,6 +21,8 @@ class CarriedPoints {
     std::vector<mesh::Barycentric> weights;  ///< [point] of them
 
     std::size_t size() const noexcept { return parts.size(); }
+    /// [point] the node that it is; empty where a point is none.
+    std::span<const std::int32_t> as_nodes() const noexcept { return as_nodes_; }
     void add(const mesh::MaterialPoint& point, const mesh::Tetrahedron& of_part);
 
     /// Finds the places of points from those of the body's nodes: sum_k weights[p][k] positions[nodes[p][k]]. Points
@@ -40,6 +42,7 @@ class CarriedPoints {
     std::vector<OnNode> on_nodes_;
     std::vector<OnEdge> on_edges_;
     std::vector<std::int32_t> inside_;  ///< of faces and elements
+    std::vector<std::int32_t> as_nodes_;
 };
 
 }  // namespace lancet::runtime

@@ -26,6 +26,12 @@ int whole_steps(const BodyDefinition& definition, double world_step) {
 
 }  // namespace
 
+std::span<const Point> MotionSnapshot::find_vertices(Scheduler& scheduler, std::vector<Point>& places) const {
+    if (!vertices.empty()) return vertices;
+    surface->vertices.place(scheduler, positions, places);
+    return places;
+}
+
 SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const std::array<double, 3>& gravity,
                              const SleepOptions& sleep, Scheduler& scheduler)
     : definition_(std::move(definition)), sleep_(sleep), steps_per_world_step_(whole_steps(definition_, world_step)) {
@@ -175,8 +181,17 @@ void SimulatedBody::publish(std::int64_t step, double time) {
     snapshot->surface = surface_;
     snapshot->step = step;
     snapshot->time = time;
-    snapshot->positions.resize(body().nodes());
-    body().positions(snapshot->positions);
+    // Of a body without cuts and a surface of its own, half of the nodes and more are inside, for nobody to see.
+    const std::span<const std::int32_t> nodes = surface_->vertices.as_nodes();
+    if (surface_->solid == nullptr && !nodes.empty()) {
+        snapshot->positions.clear();
+        snapshot->vertices.resize(nodes.size());
+        body().positions(nodes, snapshot->vertices);
+    } else {
+        snapshot->vertices.clear();
+        snapshot->positions.resize(body().nodes());
+        body().positions(snapshot->positions);
+    }
     snapshots_.publish();
 }
 

@@ -40,7 +40,12 @@ struct MotionSnapshot {
     std::shared_ptr<const CarriedSurface> surface;  ///< empty where nobody asks for it
     std::int64_t step = 0;
     double time = 0;
-    std::vector<Point> positions;  ///< [node of the body]
+    /// [vertex of the surface], where all of them are nodes and nobody asks for more; else empty.
+    std::vector<Point> vertices;
+    std::vector<Point> positions;  ///< [node of the body] where `vertices` is empty
+
+    /// Where the vertices of the surface are: those of the snapshot, or found in `places`.
+    std::span<const Point> find_vertices(Scheduler& scheduler, std::vector<Point>& places) const;
 };
 
 /// A body among others: whatever its method, it is stepped, cut, pushed and looked at in the same way.

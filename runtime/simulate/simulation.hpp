@@ -206,6 +206,7 @@ class Simulation {
     bool frame_is_due_ = false, collision_is_due_ = false;
     std::vector<Snapshots<MotionSnapshot>::Reader> before_;  ///< [body] the state that the step starts from
     std::vector<Point> vertex_places_;                       ///< of a body that a tool may take hold of
+    std::vector<Point> touched_places_;                      ///< of a body that tools may touch
     std::vector<SurfaceEvaluator> evaluators_;               ///< [body]
     std::vector<TouchableSurface> touchable_;                ///< [body]
     std::optional<BodyContactFinder> body_contact_finder_;

@@ -48,7 +48,9 @@ StepGraph::Task Simulation::add_steps(int number, const std::optional<Task>& bef
 
 void Simulation::make_room_for_bodies() {
     before_.resize(bodies_.size());
-    evaluators_.resize(bodies_.size());
+    while (evaluators_.size() < bodies_.size()) {
+        evaluators_.emplace_back(bodies_[evaluators_.size()]->body().settings().instruction_set);
+    }
     touchable_.resize(bodies_.size());
     cut_statistics_.resize(bodies_.size());
     for (const auto& tool : tools_) {

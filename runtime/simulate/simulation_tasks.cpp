@@ -128,7 +128,12 @@ void Simulation::evaluate_surface(std::size_t number) {
     shape->surface = snapshot->surface;
     shape->step = snapshot->step;
     shape->time = snapshot->time;
-    evaluators_[number].evaluate(*scheduler_, *snapshot->surface, snapshot->positions, *shape);
+    if (snapshot->vertices.empty()) {
+        snapshot->surface->vertices.place(*scheduler_, snapshot->positions, shape->positions);
+    } else {
+        shape->positions = snapshot->vertices;
+    }
+    evaluators_[number].find_normals(*scheduler_, *snapshot->surface, *shape);
     bodies_[number]->shapes().publish();
 }
 

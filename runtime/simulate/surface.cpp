@@ -1,24 +1,15 @@
 #include "lancet/runtime/simulate/surface.hpp"
 
 #include <algorithm>
+#include <bit>
 
+#include "lancet/kernels/isa/kernel_set.hpp"
 #include "lancet/mesh/boundary.hpp"
-#include "lancet/mesh/surface/corner_normals.hpp"
+#include "lancet/mesh/surface/vertex_normals.hpp"
 
 namespace lancet::runtime {
 
 namespace {
-
-/// Some tens of microseconds of work, whatever the number of threads.
-constexpr std::size_t per_block = 1024;
-
-template <class Body>
-void for_each_range(Scheduler& scheduler, std::size_t size, const Body& body) {
-    scheduler.for_each_block(static_cast<int>((size + per_block - 1) / per_block), [&](int block) {
-        const std::size_t begin = static_cast<std::size_t>(block) * per_block;
-        body(begin, std::min(size, begin + per_block));
-    });
-}
 
 /// Numbers what triangles use of some points, in the order of its first use.
 class Renumbering {
@@ -48,6 +39,11 @@ mesh::MaterialPoint corner_of(const mesh::Tetrahedron& nodes, std::int32_t eleme
     return point;
 }
 
+void find_neighbours(CarriedSurface& surface) {
+    surface.corners = {surface.vertices.size(), surface.triangles};
+    surface.rings = kernels::vertex_rings(surface.vertices.size(), surface.triangles);
+}
+
 }  // namespace
 
 CarriedSurface boundary_surface(const mesh::TetMesh& mesh) {
@@ -64,7 +60,7 @@ CarriedSurface boundary_surface(const mesh::TetMesh& mesh) {
         surface.triangles.push_back(triangle);
     }
     surface.is_wall.assign(surface.triangles.size(), 0);
-    surface.corners = {surface.vertices.size(), surface.triangles};
+    find_neighbours(surface);
     return surface;
 }
 
@@ -81,7 +77,7 @@ CarriedSurface boundary_surface(const mesh::CutMesh& cut, const mesh::PartGeomet
         }
         surface.triangles.push_back(triangle);
     }
-    surface.corners = {surface.vertices.size(), surface.triangles};
+    find_neighbours(surface);
     return surface;
 }
 
@@ -92,7 +88,7 @@ CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine) {
     }
     surface.triangles.assign(fine.triangles().begin(), fine.triangles().end());
     surface.is_wall.assign(fine.is_wall().begin(), fine.is_wall().end());
-    surface.corners = {surface.vertices.size(), surface.triangles};
+    find_neighbours(surface);
     return surface;
 }
 
@@ -123,17 +119,32 @@ CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& g
     return solid;
 }
 
-void SurfaceEvaluator::evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes,
-                                SurfaceShape& out) {
-    surface.vertices.place(scheduler, nodes, out.positions);
-    corner_normals_.resize(3 * surface.triangles.size());
-    for_each_range(scheduler, surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
-        mesh::corner_normals(std::span(surface.triangles).subspan(begin, end - begin), out.positions,
-                             std::span(corner_normals_).subspan(3 * begin, 3 * (end - begin)));
-    });
-    out.normals.resize(out.positions.size());
-    for_each_range(scheduler, out.normals.size(), [&](std::size_t begin, std::size_t end) {
-        mesh::add_corner_normals(surface.corners, corner_normals_, begin, end, out.normals);
+SurfaceEvaluator::SurfaceEvaluator(kernels::InstructionSet instruction_set)
+    : kernels_(kernels::kernel_set<float>(instruction_set).normals) {}
+
+void SurfaceEvaluator::find_normals(Scheduler& scheduler, const CarriedSurface& surface, SurfaceShape& shape) {
+    shape.normals.resize(shape.positions.size());
+    if (shape.positions.empty()) return;
+    const kernels::VertexRings& rings = surface.rings;
+    doubtful_.resize(static_cast<std::size_t>(rings.batches()));
+    const kernels::VertexNormalArguments arguments{.slot_begin = rings.slot_begin.data(),
+                                                   .vertices = rings.vertices.data(),
+                                                   .neighbours = rings.neighbours.data(),
+                                                   .positions = shape.positions.front().data(),
+                                                   .normals = shape.normals.front().data(),
+                                                   .doubtful = doubtful_.data()};
+    scheduler.for_each_block(rings.blocks(), [&](int block) {
+        const int begin = block * kernels::VertexRings::batches_per_block;
+        const int end = std::min(rings.batches(), begin + kernels::VertexRings::batches_per_block);
+        kernels_.vertex_normals(arguments, begin, end);
+        // What float cannot tell is found in double, vertex by vertex.
+        for (int batch = begin; batch < end; ++batch) {
+            for (unsigned lanes = doubtful_[static_cast<std::size_t>(batch)]; lanes != 0; lanes &= lanes - 1) {
+                const int slot = batch * kernels::VertexRings::lanes + std::countr_zero(lanes);
+                const auto vertex = static_cast<std::size_t>(rings.vertices[static_cast<std::size_t>(slot)] / 3);
+                mesh::vertex_normals(surface.corners, shape.positions, vertex, vertex + 1, shape.normals);
+            }
+        }
     });
 }
 

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "lancet/kernels/isa/instruction_set.hpp"
+#include "lancet/kernels/layout/vertex_rings.hpp"
 #include "lancet/mesh/cut/part_geometry.hpp"
 #include "lancet/mesh/embed/embedded_surface.hpp"
 #include "lancet/mesh/surface/vertex_normals.hpp"
@@ -29,6 +31,7 @@ struct CarriedSurface {
     std::vector<mesh::Triangle> triangles;  ///< counter-clockwise as seen from outside
     std::vector<std::uint8_t> is_wall;      ///< [triangle] 1: a cut made it
     mesh::VertexCorners corners;
+    kernels::VertexRings rings;
     std::shared_ptr<const CarriedSolid> solid;  ///< empty where nobody asks for it
 };
 
@@ -44,7 +47,8 @@ struct SurfaceShape {
     std::int64_t step = 0;         ///< world steps that had been taken
     double time = 0;               ///< s
     std::vector<Point> positions;  ///< [vertex] metres
-    std::vector<Point> normals;    ///< [vertex] of unit length, smooth (see mesh::vertex_normals)
+    /// [vertex] of unit length, smooth: as mesh::vertex_normals, to what float makes of them (see NormalKernels).
+    std::vector<Point> normals;
 };
 
 /// The shapes of a body's surface. One slot more than others have: a frame holds a shape until the next one comes.
@@ -59,14 +63,17 @@ CarriedSurface carried_surface(const mesh::EmbeddedSurface& fine);
 CarriedSolid carried_solid(const mesh::TetMesh& mesh);
 CarriedSolid carried_solid(const mesh::CutMesh& cut, const mesh::PartGeometry& geometry);
 
-/// Finds out how surfaces lie, one after the other.
+/// Finds the normals of surfaces, one after the other.
 class SurfaceEvaluator {
   public:
-    /// Positions and normals from the places of the body's nodes. Allocates only where there are more than before.
-    void evaluate(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes, SurfaceShape& out);
+    explicit SurfaceEvaluator(kernels::InstructionSet instruction_set = kernels::active_instruction_set());
+
+    /// From the positions of the same shape. Allocates only where there are more than before.
+    void find_normals(Scheduler& scheduler, const CarriedSurface& surface, SurfaceShape& shape);
 
   private:
-    std::vector<Point> corner_normals_;  ///< see mesh::corner_normals
+    kernels::NormalKernels kernels_;
+    std::vector<std::uint16_t> doubtful_;  ///< see VertexNormalArguments
 };
 
 }  // namespace lancet::runtime

@@ -47,9 +47,9 @@ void Simulation::take_hold(Tool& tool) {
         const CarriedSurface& surface = *before_[number]->surface;
         const auto begin = static_cast<std::ptrdiff_t>(tool.grabs.size());
         // Nothing has moved since: where vertices were is enough to leave out those far away.
-        surface.vertices.place(*scheduler_, before_[number]->positions, vertex_places_);
+        const std::span<const Point> places = before_[number]->find_vertices(*scheduler_, vertex_places_);
         for (std::size_t vertex = 0; vertex < surface.vertices.size(); ++vertex) {
-            const Point& place = vertex_places_[vertex];
+            const Point& place = places[vertex];
             if (!touch(box, {place, place})) continue;
             ToolSpring spring{.body = static_cast<int>(number)};
             spring.on_body.corners[0] = {surface.vertices.parts[vertex], surface.vertices.weights[vertex]};
@@ -94,7 +94,7 @@ void Simulation::find_tool_contacts() {
         const MotionSnapshot* snapshot = seen(number, reader);
         if (snapshot == nullptr) continue;
         const CarriedSurface& surface = *snapshot->surface;
-        touchable_[number].update(*scheduler_, surface, snapshot->positions);
+        touchable_[number].update(snapshot->find_vertices(*scheduler_, touched_places_));
         for (const auto& tool : tools_) {
             if (!tool->is_felt()) continue;
             std::vector<ToolSpring>& found = options_.overlap ? tool->found : tool->contacts;

@@ -1,5 +1,6 @@
 #include "lancet/runtime/simulate/touchable_surface.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace lancet::runtime {
@@ -28,11 +29,20 @@ std::uint8_t sides_beyond(const Box& box, const Point& point) {
     return static_cast<std::uint8_t>(sides);
 }
 
+/// Whether all points lie beyond one side of a box. Most that do not are found out by the first few.
+bool is_all_beyond(const Box& box, std::span<const Point> points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double lower = box.lower[axis], upper = box.upper[axis];
+        if (std::ranges::all_of(points, [&](const Point& point) { return point[axis] < lower; })) return true;
+        if (std::ranges::all_of(points, [&](const Point& point) { return point[axis] > upper; })) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
-void TouchableSurface::update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes) {
-    surface.vertices.place(scheduler, nodes, positions_);
-    box_ = runtime::box_around(positions_);
+void TouchableSurface::update(std::span<const Point> positions) {
+    positions_ = positions;
 }
 
 void TouchableSurface::find_near(const CarriedSurface& surface, const Box& box) {
@@ -63,9 +73,8 @@ void TouchableSurface::find_near(const CarriedSurface& surface, const Box& box) 
 }
 
 std::span<const ToolContact> TouchableSurface::contacts(const CarriedSurface& surface, const ToolMotion& motion) {
-    // A box that is not valid, of a vertex that is not finite, says nothing.
     Box box = box_around(motion);
-    if (is_valid(box_) && !touch(box_, box)) return {};
+    if (is_all_beyond(box, positions_)) return {};
     // Wider by what counts as zero for the broad phase.
     for (std::size_t axis = 0; axis < 3; ++axis) {
         box.lower[axis] -= smallest_coordinate;

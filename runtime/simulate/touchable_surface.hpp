@@ -15,11 +15,11 @@ class TouchableSurface {
   public:
     TouchableSurface() : boxes_near_(make_broad_phase(BroadPhaseKind::brute_force)) {}
 
-    /// Takes up where the body's nodes are.
-    void update(Scheduler& scheduler, const CarriedSurface& surface, std::span<const Point> nodes);
-    /// The contacts of a tool that has moved; valid until the next call. Looks at single triangles only where the tool
-    /// comes into the box around all, and closely only at those whose boxes touch the one around the tool's way: there
-    /// are few tools, and that costs less than keeping a tree of the triangles.
+    /// Takes up where the vertices are. The positions must stay as long as contacts are asked for.
+    void update(std::span<const Point> positions);
+    /// The contacts of a tool that has moved; valid until the next call. Looks at single triangles only where
+    /// vertices are not all beyond one side of the tool's box, and closely only at those whose boxes touch the one
+    /// around the tool's way: there are few tools, and that costs less than keeping a tree of the triangles.
     std::span<const ToolContact> contacts(const CarriedSurface& surface, const ToolMotion& motion);
 
   private:
@@ -27,8 +27,7 @@ class TouchableSurface {
     void find_near(const CarriedSurface& surface, const Box& box);
 
     std::int64_t version_ = -1;
-    Box box_{};  ///< around all vertices
-    std::vector<Point> positions_;
+    std::span<const Point> positions_;
     std::vector<std::uint8_t> sides_;  ///< [vertex] those of a box beyond which it lies, a bit for each
     // Of the triangles that are near:
     std::vector<std::int32_t> numbers_;
