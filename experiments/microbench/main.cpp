@@ -69,6 +69,7 @@ int run(int count, char** arguments) {
     add_machine_stamp();
     register_peak();
     register_rotation();
+    register_normals();
     register_cut();
     const std::shared_ptr<Samples> samples = register_solver(cells_to_measure(large, benchmark::GetBenchmarkFilter()));
     if (benchmark::RunSpecifiedBenchmarks() == 0) {

@@ -25,6 +25,9 @@ constexpr const char* scalar_name() {
 
 void register_peak();
 void register_rotation();
+/// Normals of the Bar's surface, named normals/vertices/float/instruction set; beside them those in double that they
+/// are compared with.
+void register_normals();
 /// Strokes of a blade through the Bar, named cut/strokes/mesh: exact geometry in double, without an instruction set.
 void register_cut();
 
