@@ -109,7 +109,8 @@ int NodeNumbering::block_of(std::int32_t node) const noexcept {
 
 std::size_t NodeNumbering::bytes() const noexcept {
     return heap_bytes(internal_of_user) + heap_bytes(user_of_internal) + heap_bytes(aggregate_begin) +
-           heap_bytes(block_begin) + heap_bytes(block_aggregate_begin);
+           heap_bytes(block_begin) + heap_bytes(block_aggregate_begin) + heap_bytes(sleeping.nodes) +
+           heap_bytes(sleeping.blocks) + heap_bytes(sleeping.awake_blocks);
 }
 
 NodeNumbering number_nodes(std::span<const Point> positions, std::span<const Tetrahedron> tetrahedra,

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "lancet/kernels/layout/sleeping_nodes.hpp"
+
 namespace lancet::kernels {
 
 using Point = std::array<double, 3>;
@@ -37,6 +39,7 @@ struct NodeNumbering {
     std::vector<std::int32_t> aggregate_begin;        ///< first node of each aggregate, and the end
     std::vector<std::int32_t> block_begin;            ///< first node of each block, and the end
     std::vector<std::int32_t> block_aggregate_begin;  ///< first aggregate of each block, and the end
+    SleepingNodes sleeping;                           ///< those of now
 
     int blocks() const noexcept { return static_cast<int>(block_begin.size()) - 1; }
     int aggregates() const noexcept { return static_cast<int>(aggregate_begin.size()) - 1; }

@@ -4,6 +4,7 @@
 
 #include "lancet/runtime/integrate/nodal_sum.hpp"
 #include "lancet/runtime/integrate/step_timer.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
 
@@ -130,7 +131,7 @@ void EnergySafeguard<Real, Accumulate>::slow_down(Scheduler& scheduler, BodyMoti
                                                   const std::array<double, 4>& limit) {
     const kernels::NodeNumbering& numbering = parts_.numbering;
     const std::span<const double> start = parts_.equations.velocity();
-    scheduler.for_each_block(numbering.blocks(), [&](int block) {
+    for_each_awake_block(scheduler, numbering, [&](int block) {
         const std::size_t begin = 4 * static_cast<std::size_t>(numbering.block_begin[block]);
         const std::size_t end = 4 * static_cast<std::size_t>(numbering.block_begin[block + 1]);
         for (std::size_t i = begin; i < end; ++i) {

@@ -5,6 +5,7 @@
 
 #include "lancet/runtime/integrate/nodal_sum.hpp"
 #include "lancet/runtime/observe/clock.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 #include "lancet/runtime/solve/critical_step.hpp"
 #include "lancet/runtime/solve/matrix_free.hpp"
 
@@ -30,7 +31,7 @@ void ExplicitStep<Real>::accelerate(Scheduler& scheduler, BodyMotion& motion, co
                                     const ConstraintFilter& filter, double divisor) {
     elements_->evaluate(scheduler, motion.position.data(),
                         {.rotation = !is_linear(), .force = true, .energy = false, .keep_gradients = false});
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         elements_->merge_force(block);
         const Real* force = elements_->force();
         for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
@@ -64,7 +65,7 @@ bool ExplicitStep<Real>::kick(Scheduler& scheduler, BodyMotion& motion, double l
 template <class Real>
 void ExplicitStep<Real>::drift(Scheduler& scheduler, BodyMotion& motion) {
     const double h = settings_.time_step;
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
             motion.position[i] += h * motion.velocity[i];

@@ -37,6 +37,7 @@ class ExplicitStep final : public StepMethod<Real> {
     void forget_velocity() noexcept override { acceleration_is_known_ = false; }
     void forget_acceleration() noexcept override { acceleration_is_known_ = false; }
     void forget_matrix() noexcept override {}
+    void change_sleepers() override {}
 
     std::size_t bytes() const noexcept override;
     const Operator<Real>* matrix() const noexcept override { return nullptr; }

@@ -52,9 +52,16 @@ void FloorContact::require_above(const kernels::NodeNumbering& numbering, std::s
     }
 }
 
-bool FloorContact::let_go(std::span<const double> velocity, std::span<const double> force, double h) {
+bool FloorContact::is_touched(const kernels::NodeNumbering& numbering) const noexcept {
+    return std::ranges::any_of(contacts_,
+                               [&](const Holds::Contact& contact) { return !numbering.sleeping.has(contact.node); });
+}
+
+bool FloorContact::let_go(const kernels::NodeNumbering& numbering, std::span<const double> velocity,
+                          std::span<const double> force, double h) {
     return std::erase_if(contacts_, [&](const Holds::Contact& contact) {
                const auto node = static_cast<std::size_t>(contact.node);
+               if (numbering.sleeping.has(contact.node)) return false;
                if (along_normal(force, node) < 0 && h * along_normal(velocity, node) <= rounding_) return false;
                touches_[node] = 0;
                return true;
@@ -66,7 +73,7 @@ bool FloorContact::add(const kernels::NodeNumbering& numbering, std::span<const 
     const std::size_t before = contacts_.size();
     for (std::int32_t internal = 0; internal < numbering.free_count; ++internal) {
         const auto node = static_cast<std::size_t>(internal);
-        if (touches_[node] != 0 || numbering.user_of_internal[node] < 0) continue;
+        if (touches_[node] != 0 || numbering.user_of_internal[node] < 0 || numbering.sleeping.has(internal)) continue;
         const double above = height(start, node);
         const double lowest = above > -2 * rounding_ ? -rounding_ : above;
         if (!(height(end, node) < lowest)) continue;

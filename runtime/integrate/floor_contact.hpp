@@ -26,13 +26,15 @@ class FloorContact {
                  double epsilon);
 
     bool exists() const noexcept { return floor_.has_value(); }
-    bool is_touched() const noexcept { return !contacts_.empty(); }
+    /// Whether a node that is awake rests on it.
+    bool is_touched(const kernels::NodeNumbering& numbering) const noexcept;
     /// Throws lancet::Error if a node lies below the floor by more than rounding; names it in the user's numbering.
     void require_above(const kernels::NodeNumbering& numbering, std::span<const double> position) const;
 
-    /// Ends the contacts that pull, before a step of h seconds. `force`: on each node without the floor's, xyz_ in
-    /// newtons, read at the nodes in contact. True if there were any.
-    bool let_go(std::span<const double> velocity, std::span<const double> force, double h);
+    /// Ends the contacts that pull, but for those of nodes that are asleep, before a step of h seconds. `force`: on
+    /// each node without the floor's, xyz_ in newtons, read at the nodes in contact. True if there were any.
+    bool let_go(const kernels::NodeNumbering& numbering, std::span<const double> velocity,
+                std::span<const double> force, double h);
     /// Adds the nodes that a step has brought from `start` to `end` below the surface. True if there are any.
     bool add(const kernels::NodeNumbering& numbering, std::span<const double> start, std::span<const double> end);
 

@@ -129,7 +129,9 @@ HeldNode& Holds::active(std::int32_t node) {
 void Holds::prepare(const kernels::NodeNumbering& numbering, double time) {
     for (const HeldNode& held : active_) place_of_node_[held.node] = -1;
     active_.clear();
+    const kernels::SleepingNodes& sleeping = numbering.sleeping;
     for (const Prescribed& prescribed : prescribed_) {
+        if (sleeping.has(prescribed.node)) continue;
         Point place{0, 0, 0};
         place[prescribed.axis] = prescribed.rest + prescribed.displacement(time);
         if (!std::isfinite(place[prescribed.axis])) {
@@ -139,13 +141,16 @@ void Holds::prepare(const kernels::NodeNumbering& numbering, double time) {
         active(prescribed.node).add(axes[prescribed.axis], place);
     }
     for (const Hold& hold : holds_) {
+        if (sleeping.has(hold.node)) continue;
         if (hold.direction == Point{0, 0, 0}) {
             active(hold.node).add_all(hold.target);
         } else {
             active(hold.node).add(hold.direction, hold.target);
         }
     }
-    for (const Contact& contact : contacts_) active(contact.node).add(normal_, contact.place);
+    for (const Contact& contact : contacts_) {
+        if (!sleeping.has(contact.node)) active(contact.node).add(normal_, contact.place);
+    }
     if (filter_is_known_) return;
 
     std::vector<NodeConstraint> constraints;
@@ -165,6 +170,9 @@ void Holds::prepare(const kernels::NodeNumbering& numbering, double time) {
             }
         }
         constraints.push_back({held.node, free});
+    }
+    for (std::int32_t node = 0; node < numbering.free_count && !sleeping.empty(); ++node) {
+        if (sleeping.has(node)) constraints.push_back({node, {}});
     }
     filter_ = ConstraintFilter(std::move(constraints), numbering);
     filter_is_known_ = true;

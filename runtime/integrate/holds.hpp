@@ -54,6 +54,10 @@ class Holds {
     /// Replaces the contacts. `changed`: they are not of the same nodes as before.
     void set_contacts(std::span<const Contact> contacts, const mesh::Point& normal, bool changed);
 
+    /// Tells that other nodes are asleep than before (NodeNumbering::sleeping). Nothing leads them, and the filter
+    /// keeps them where they are.
+    void change_sleepers() noexcept { filter_is_known_ = false; }
+
     /// Takes the targets of a step that ends at `time` seconds. Throws lancet::Error for prescribed displacements that
     /// are not finite. Allocates only where other nodes are held than before.
     void prepare(const kernels::NodeNumbering& numbering, double time);

@@ -6,6 +6,7 @@
 
 #include "lancet/runtime/integrate/nodal_sum.hpp"
 #include "lancet/runtime/integrate/step_timer.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
 
@@ -48,7 +49,7 @@ ImplicitStep<Real, Accumulate>::ImplicitStep(ElasticElements<Real>& elements, co
 template <class Real, class Accumulate>
 void ImplicitStep<Real, Accumulate>::add_change(Scheduler& scheduler, BodyMotion& motion) {
     const VelocityChange<Accumulate> change = system_.change();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
             motion.velocity[i] += change[i];
@@ -280,6 +281,12 @@ void ImplicitStep<Real, Accumulate>::forget() noexcept {
     forget_velocity();
     system_.forget();
     steps_since_renewal_ = 0;
+}
+
+template <class Real, class Accumulate>
+void ImplicitStep<Real, Accumulate>::change_sleepers() {
+    safeguard_.forget();
+    system_.change_sleepers();
 }
 
 template <class Real, class Accumulate>

@@ -33,6 +33,7 @@ class ImplicitStep final : public StepMethod<Real> {
     void forget_velocity() noexcept override;
     void forget_acceleration() noexcept override;
     void forget_matrix() noexcept override { system_.forget_matrix(); }
+    void change_sleepers() override;
 
     std::size_t bytes() const noexcept override;
     const Operator<Real>* matrix() const noexcept override { return &system_.matrix(); }

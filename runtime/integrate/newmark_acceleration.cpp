@@ -1,5 +1,7 @@
 #include "lancet/runtime/integrate/newmark_acceleration.hpp"
 
+#include "lancet/runtime/solve/block_loop.hpp"
+
 namespace lancet::runtime {
 
 template <class Real, class Accumulate>
@@ -24,7 +26,7 @@ void NewmarkAcceleration<Real, Accumulate>::find(Scheduler& scheduler, BodyMotio
     const double g = equations_->momentum_length();
     const std::span<const Accumulate> impulse = system_->right_hand_side();
     const std::span<double> forces = equations_->position();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
             const auto at = static_cast<std::size_t>(node);
             for (std::size_t i = 4 * at; i < 4 * at + 3; ++i) {
@@ -53,7 +55,7 @@ void NewmarkAcceleration<Real, Accumulate>::begin(Scheduler& scheduler, const Bo
     const double h = equations_->step_length(), c = equations_->position_length();
     const double early = equations_->early_length(), curved = h * h * (0.5 - beta_);
     const std::span<double> position = equations_->position(), velocity = equations_->velocity();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
             const double v = motion.velocity[i], a = motion.acceleration[i];
@@ -67,7 +69,7 @@ template <class Real, class Accumulate>
 void NewmarkAcceleration<Real, Accumulate>::end(Scheduler& scheduler, BodyMotion& motion) {
     const double g = equations_->momentum_length();
     const std::span<const double> start = equations_->velocity();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
             motion.acceleration[i] = (motion.velocity[i] - start[i]) / g;

@@ -6,21 +6,23 @@
 #include <span>
 
 #include "lancet/kernels/layout/node_numbering.hpp"
-#include "lancet/runtime/schedule/ordered_sum.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
 
-/// The sum of value(node, 4 * node) over the free nodes, added in block order. `partial` has a place for each block.
+/// The sum of value(node, 4 * node) over the free nodes of blocks that are not left out, added in block order.
+/// `partial` has a place for each block.
 template <class Function>
 double sum_over_nodes(Scheduler& scheduler, const kernels::NodeNumbering& numbering, std::span<double> partial,
                       const Function& value) {
-    return ordered_sum(scheduler, partial, [&](int block) {
+    for_each_awake_block(scheduler, numbering, [&](int block) {
         double sum = 0;
         for (std::int32_t node = numbering.block_begin[block]; node < numbering.block_begin[block + 1]; ++node) {
             sum += value(static_cast<std::size_t>(node), 4 * static_cast<std::size_t>(node));
         }
-        return sum;
+        partial[static_cast<std::size_t>(block)] = sum;
     });
+    return sum_over_awake_blocks(numbering, partial);
 }
 
 /// Whether the positions and velocities (xyz_) of all free nodes are finite.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "lancet/runtime/integrate/nodal_sum.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
 
@@ -70,7 +71,7 @@ double StepEnergy<Real>::growth(Scheduler& scheduler, const StepEquations& step,
                               : elastic(scheduler, motion.position.data());
     after.kinetic = kinetic(scheduler, motion.velocity);
     if (has_holds) {
-        scheduler.for_each_block(elements_->numbering().blocks(), [&](int block) { elements_->merge_force(block); });
+        for_each_awake_block(scheduler, elements_->numbering(), [&](int block) { elements_->merge_force(block); });
     }
     const double work = sum_over_nodes(scheduler, [&](std::size_t node, std::size_t at) {
         double sum = 0;

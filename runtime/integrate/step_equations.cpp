@@ -1,5 +1,7 @@
 #include "lancet/runtime/integrate/step_equations.hpp"
 
+#include "lancet/runtime/solve/block_loop.hpp"
+
 namespace lancet::runtime {
 
 StepEquations::StepEquations(const Settings& settings, const kernels::NodeNumbering& numbering, const Inertia& inertia)
@@ -32,7 +34,7 @@ void StepEquations::set_impulse(Scheduler& scheduler, std::span<const double> ve
     has_impulse_ = !inertia_->consistent.empty() && !before_hold.empty();
     if (!has_impulse_) return;
     const double share = momentum_length_ / step_length_;
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
             const auto at = static_cast<std::size_t>(node);
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -45,7 +47,7 @@ void StepEquations::set_impulse(Scheduler& scheduler, std::span<const double> ve
 
 void StepEquations::move(Scheduler& scheduler, std::span<double> position, double length,
                          std::span<const double> velocity) const {
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
             position[i] = position_[i] + length * velocity[i];

@@ -72,6 +72,10 @@ class StepMethod {
     /// Tells that rotations and gradients were renewed from outside.
     virtual void forget_matrix() noexcept = 0;
 
+    /// Tells that other nodes are asleep than before (NodeNumbering::sleeping), which have no velocity and no
+    /// acceleration. Those that wake start without; the others keep theirs.
+    virtual void change_sleepers() = 0;
+
     virtual std::size_t bytes() const noexcept = 0;
     /// nullptr where no system is solved.
     virtual const Operator<Real>* matrix() const noexcept = 0;

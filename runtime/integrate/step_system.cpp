@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lancet/runtime/schedule/ordered_sum.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 #include "lancet/runtime/solve/critical_step.hpp"
 
 namespace lancet::runtime {
@@ -94,7 +94,7 @@ double StepSystem<Real, Accumulate>::set_right_hand_side(Scheduler& scheduler, c
         fall_[axis] = g * loads.gravity[axis] / damped + early * loads.gravity[axis];
     }
     const std::span<const double> start = equations_->velocity(), impulse = equations_->impulse();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         elements_->merge_force(block);
         if (needs_product) matrix_->merge(block);
         const Real* force = elements_->force();
@@ -126,7 +126,7 @@ double StepSystem<Real, Accumulate>::set_right_hand_side(Scheduler& scheduler, c
         }
         partial_[static_cast<std::size_t>(block)] = square;
     });
-    return sum_in_order(std::span<const double>(partial_));
+    return sum_over_awake_blocks(*numbering_, partial_);
 }
 
 template <class Real, class Accumulate>
@@ -152,7 +152,7 @@ void StepSystem<Real, Accumulate>::apply_matrix(Scheduler& scheduler, const doub
                                                 std::span<const Real> z, std::span<Real> out) {
     linearise(scheduler, position, loads, true);
     matrix_->product(scheduler, z.data());
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) { matrix_->merge(block); });
+    for_each_awake_block(scheduler, *numbering_, [&](int block) { matrix_->merge(block); });
     std::copy_n(matrix_->buffer(), out.size(), out.begin());
 }
 
@@ -175,6 +175,16 @@ template <class Real, class Accumulate>
 void StepSystem<Real, Accumulate>::forget() noexcept {
     matrix_is_known_ = false;
     preconditioner_->forget_coarse();
+}
+
+template <class Real, class Accumulate>
+void StepSystem<Real, Accumulate>::change_sleepers() {
+    forget();
+    // What is left out is not written, and what is computed beside it reads that it does not move.
+    std::ranges::fill(change_, Accumulate(0));
+    std::ranges::fill(conjugate_gradients_.scratch(), Real(0));
+    std::fill_n(matrix_->buffer(), matrix_->buffer_size(), Real(0));
+    elements_->forget_force();
 }
 
 template <class Real, class Accumulate>

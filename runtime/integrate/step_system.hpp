@@ -67,6 +67,8 @@ class StepSystem {
     bool take_up(const LayoutChange& change);
     void forget_matrix() noexcept { matrix_is_known_ = false; }
     void forget() noexcept;
+    /// Tells that other nodes are asleep than before.
+    void change_sleepers();
 
     const Operator<Real>& matrix() const noexcept { return *matrix_; }
     Preconditioner<Real>& preconditioner() const noexcept { return *preconditioner_; }

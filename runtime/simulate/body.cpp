@@ -16,6 +16,7 @@
 #include "lancet/runtime/simulate/changed_layout.hpp"
 #include "lancet/runtime/simulate/loads.hpp"
 #include "lancet/runtime/simulate/scene_layout.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 #include "lancet/runtime/solve/critical_step.hpp"
 
 namespace lancet::runtime {
@@ -31,6 +32,20 @@ void require_finite(std::span<const Point> values, const char* what) {
         }
     }
 }
+
+/// While it lives, passes over a body leave out the blocks that are asleep.
+class LeaveSleepersOut {
+  public:
+    explicit LeaveSleepersOut(kernels::SleepingNodes& sleeping) : sleeping_(&sleeping) {
+        sleeping.are_left_out = !sleeping.empty();
+    }
+    LeaveSleepersOut(const LeaveSleepersOut&) = delete;
+    LeaveSleepersOut& operator=(const LeaveSleepersOut&) = delete;
+    ~LeaveSleepersOut() { sleeping_->are_left_out = false; }
+
+  private:
+    kernels::SleepingNodes* sleeping_;
+};
 
 }  // namespace
 
@@ -88,6 +103,7 @@ class BodyOf final : public DeformableBody {
     }
 
     StepReport run(StepStage stage, Scheduler& scheduler) override {
+        const LeaveSleepersOut leave_out(numbering_.sleeping);
         if (stage == StepStage::forces) {
             report_ = {};
             if (floor_.exists()) {
@@ -99,6 +115,7 @@ class BodyOf final : public DeformableBody {
         run_stage(stage, scheduler, report_);
         if (stage == StepStage::update) {
             if (floor_.exists()) repeat_above_floor(scheduler);
+            totals_.sleeping_blocks += std::ranges::count(numbering_.sleeping.blocks, std::uint8_t{1});
             time_ += settings_.time_step;
         }
         return report_;
@@ -130,6 +147,7 @@ class BodyOf final : public DeformableBody {
     void set_positions(std::span<const Point> positions) override {
         require_count(positions.size(), "positions");
         require_finite(positions, "position");
+        take_sleepers({});
         for (std::size_t node = 0; node < positions.size(); ++node) {
             const std::int32_t internal = numbering_.internal_of_user[node];
             if (!numbering_.is_free(internal)) continue;
@@ -141,6 +159,7 @@ class BodyOf final : public DeformableBody {
     void set_velocities(std::span<const Point> velocities) override {
         require_count(velocities.size(), "velocities");
         require_finite(velocities, "velocity");
+        take_sleepers({});
         for (std::size_t node = 0; node < velocities.size(); ++node) {
             const std::int32_t internal = numbering_.internal_of_user[node];
             if (!numbering_.is_free(internal)) continue;
@@ -188,11 +207,23 @@ class BodyOf final : public DeformableBody {
         return motion;
     }
 
+    void set_asleep(std::span<const std::uint8_t> asleep) override {
+        require_count(asleep.size(), "flags");
+        if (std::ranges::count(asleep, std::uint8_t{0}) == std::ssize(asleep)) return take_sleepers({});
+        std::vector<std::uint8_t> nodes(static_cast<std::size_t>(numbering_.node_count), 0);
+        for (std::size_t node = 0; node < asleep.size(); ++node) {
+            nodes[static_cast<std::size_t>(numbering_.internal_of_user[node])] = asleep[node] != 0 ? 1 : 0;
+        }
+        take_sleepers(std::move(nodes));
+    }
+    bool is_asleep(std::int32_t node) const override { return numbering_.sleeping.has(internal_node(node)); }
+
     bool change(const BodyChange& change) override {
         const bool is_by_rows = settings_.matrix == OperatorKind::block_rows && !is_explicit(settings_.integrator);
         if (!numbering_.has_room() || is_by_rows || settings_.scatter != kernels::ScatterStrategy::private_copies) {
             return false;
         }
+        take_sleepers({});
         ChangedLayout<Real> changed(change, numbering_, spare_nodes_, elements_, rest_position_);
         LayoutChange layout;
         if (!changed.number_nodes() || !changed.lay_out_elements(layout)) return false;
@@ -286,6 +317,7 @@ class BodyOf final : public DeformableBody {
             state.solver_.insert(state.solver_.end(), bytes.begin(), bytes.end());
         }
         state.holds_ = holds_.save();
+        state.sleeping_ = numbering_.sleeping.nodes;
         return state;
     }
 
@@ -298,6 +330,7 @@ class BodyOf final : public DeformableBody {
                           numbers[4] == static_cast<double>(elements_.rotated_gradients().size_bytes()) &&
                           state.numbers_.size() == save().numbers_.size();
         if (!fits) throw Error("restore: the state was saved by a body of another scene or other settings");
+        take_sleepers(state.sleeping_);
         time_ = numbers[5];
         numbers = numbers.subspan(6);
         for (auto* vector : {&motion_.position, &motion_.velocity, &motion_.acceleration, &loads_.nodal}) {
@@ -437,10 +470,10 @@ class BodyOf final : public DeformableBody {
 
     /// Ends the contacts with the floor that would pull.
     void let_go_of_floor(Scheduler& scheduler) {
-        if (!floor_.is_touched()) return;
+        if (!floor_.is_touched(numbering_)) return;
         elements_.evaluate(scheduler, motion_.position.data(),
                            {.rotation = settings_.model != ElementModel::linear, .force = true});
-        scheduler.for_each_block(numbering_.blocks(), [&](int block) {
+        for_each_awake_block(scheduler, numbering_, [&](int block) {
             elements_.merge_force(block);
             const std::size_t end = 4 * static_cast<std::size_t>(numbering_.block_begin[block + 1]);
             for (std::size_t i = 4 * static_cast<std::size_t>(numbering_.block_begin[block]); i < end; ++i) {
@@ -451,9 +484,24 @@ class BodyOf final : public DeformableBody {
             }
         });
         if (settings_.model != ElementModel::linear) step_->forget_matrix();
-        if (!floor_.let_go(motion_.velocity, before_hold_, settings_.time_step)) return;
+        if (!floor_.let_go(numbering_, motion_.velocity, before_hold_, settings_.time_step)) return;
         holds_.set_contacts(floor_.contacts(), floor_.normal(), true);
         step_->forget_acceleration();
+    }
+
+    /// [internal node] 1: asleep; empty: none is.
+    void take_sleepers(std::vector<std::uint8_t> nodes) {
+        if (nodes == numbering_.sleeping.nodes) return;
+        numbering_.sleeping = nodes.empty() ? kernels::SleepingNodes{} : elements_.sleeping(std::move(nodes));
+        const auto sleepers = static_cast<std::int32_t>(numbering_.sleeping.nodes.size());
+        for (std::int32_t node = 0; node < sleepers; ++node) {
+            if (!numbering_.sleeping.has(node)) continue;
+            for (auto* vector : {&motion_.velocity, &motion_.acceleration}) {
+                if (!vector->empty()) std::fill_n(&(*vector)[4 * static_cast<std::size_t>(node)], 4, 0.0);
+            }
+        }
+        holds_.change_sleepers();
+        step_->change_sleepers();
     }
 
     std::int32_t internal_node(std::int32_t node) const {

@@ -46,10 +46,11 @@ struct StepTotals {
     std::int64_t lost = 0;
     std::int64_t coarse_refreshes = 0;
     std::int64_t coarse_failures = 0;
-    std::int64_t kept_rotations = 0;  ///< blocks of elements whose rotations stayed, see Settings::rotation_bound
-    double seconds_forces = 0;        ///< rotations, forces, assembly, energies
-    double seconds_solve = 0;         ///< preconditioner and conjugate gradients
-    double seconds_rest = 0;          ///< right-hand side and state update
+    std::int64_t kept_rotations = 0;   ///< blocks of elements whose rotations stayed, see Settings::rotation_bound
+    std::int64_t sleeping_blocks = 0;  ///< blocks of elements that were left out, see DeformableBody::set_asleep
+    double seconds_forces = 0;         ///< rotations, forces, assembly, energies
+    double seconds_solve = 0;          ///< preconditioner and conjugate gradients
+    double seconds_rest = 0;           ///< right-hand side and state update
 };
 
 /// Energies in joules.
@@ -72,6 +73,7 @@ class BodyState {
     std::vector<double> numbers_;
     std::vector<std::byte> solver_;
     std::vector<double> holds_;
+    std::vector<std::uint8_t> sleeping_;
 };
 
 /// A deformable body that is stepped through time. Nodes are addressed as in the scene's mesh; the numbering inside,
@@ -134,6 +136,18 @@ class DeformableBody {
         Point position{}, velocity{};
     };
     virtual NodeMotion motion(std::int32_t node) const = 0;
+
+    /// Puts nodes to sleep and wakes the others: [node] 1: asleep. What sleeps has no velocity; steps of any integrator
+    /// leave it where it is, whatever loads, holds or prescribed displacements say, until it wakes, and spend nothing
+    /// on blocks of nodes and elements that sleep as a whole. (They still look at sleepers that share a block with
+    /// nodes that are awake, and at the room for nodes of cuts to come; a body of fewer than 64 nodes is one block.)
+    /// The rest moves as it would with the sleepers awake, to the tolerance of the linear solver; but what Newton's
+    /// method and the energy safeguard decide for the body as a whole, they decide for the rest alone. What wakes
+    /// starts with no acceleration. Energies and forces are those of all nodes. set_positions, set_velocities and
+    /// change wake all nodes. Takes time proportional to the body's size, and may allocate, as may the next step.
+    /// Throws lancet::Error for an element of which some nodes are asleep and others are not.
+    virtual void set_asleep(std::span<const std::uint8_t> asleep) = 0;
+    virtual bool is_asleep(std::int32_t node) const = 0;
 
     /// Becomes another body, with work in proportion to what changes. Loads on new nodes are zero, and all holds are
     /// released. Returns false where that cannot be done in place: for block rows, for other scatter strategies than

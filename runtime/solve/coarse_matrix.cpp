@@ -166,6 +166,15 @@ void CoarseMatrix<Real>::add_crossing(const Real* offset, int block) {
 }
 
 template <class Real>
+void CoarseMatrix<Real>::clear(int block) {
+    aggregates_->for_each_of_block(block, [&](std::int32_t a) { diagonal_[static_cast<std::size_t>(a)].setZero(); });
+    for (AggregatePair& pair : pairs_[static_cast<std::size_t>(block)]) {
+        pair.coupling.setZero();
+        pair.second_diagonal.setZero();
+    }
+}
+
+template <class Real>
 void CoarseMatrix<Real>::accumulate(const Real* offset, const Real* scaled_mass, int block) {
     add_inside(offset, scaled_mass, block);
     add_crossing(offset, block);
@@ -173,7 +182,13 @@ void CoarseMatrix<Real>::accumulate(const Real* offset, const Real* scaled_mass,
 
 template <class Real>
 void CoarseMatrix<Real>::assemble(Scheduler& scheduler, const Real* offset, const Real* scaled_mass) {
-    scheduler.for_each_block(numbering_->first_blocks(), [&](int block) { accumulate(offset, scaled_mass, block); });
+    scheduler.for_each_block(numbering_->first_blocks(), [&](int block) {
+        if (numbering_->sleeping.leave_out(block)) {
+            clear(block);
+        } else {
+            accumulate(offset, scaled_mass, block);
+        }
+    });
     // The room also has edges of aggregates of other blocks.
     if (numbering_->has_room()) accumulate(offset, scaled_mass, numbering_->first_blocks());
     // Motions of what follows are about the centre of its leader already.

@@ -65,6 +65,8 @@ class CoarseMatrix {
     };
     void add_inside(const Real* offset, const Real* scaled_mass, int block);
     void add_crossing(const Real* offset, int block);
+    /// What a block has of the matrix is nothing.
+    void clear(int block);
     void accumulate(const Real* offset, const Real* scaled_mass, int block);
 
     const kernels::KernelSet<Real>* kernels_;

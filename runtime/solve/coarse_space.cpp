@@ -79,6 +79,7 @@ double CoarseSpace<Real>::change(Scheduler& scheduler, const double* positions) 
 
 template <class Real>
 bool CoarseSpace<Real>::refresh(Scheduler& scheduler, const double* positions, const Real* scaled_mass) {
+    std::ranges::fill(restricted_, 0.0);
     parts_->modes.set(scheduler, positions);
     parts_->matrix.assemble(scheduler, parts_->modes.offset().data(), scaled_mass);
     is_fresh_ = true;
@@ -203,6 +204,7 @@ void CoarseSpace<Real>::save(std::vector<double>& numbers) const {
 template <class Real>
 void CoarseSpace<Real>::restore(std::span<const double>& numbers) {
     auto& [edges, aggregates, modes, matrix, factor] = *parts_;
+    std::ranges::fill(restricted_, 0.0);
     std::size_t next = 0;
     is_fresh_ = numbers[next++] != 0;
     for (Real& number : modes.offset()) number = static_cast<Real>(numbers[next++]);

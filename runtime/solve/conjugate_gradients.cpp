@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "lancet/runtime/schedule/ordered_sum.hpp"
+#include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
 
@@ -28,7 +28,7 @@ ConjugateGradients<Real, Accumulate>::ConjugateGradients(const kernels::KernelSe
 template <class Real, class Accumulate>
 typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::sum_products()
     const noexcept {
-    return {sum_in_order(std::span<const double>(r_dot_z_)), sum_in_order(std::span<const double>(r_dot_r_))};
+    return {sum_over_awake_blocks(*numbering_, r_dot_z_), sum_over_awake_blocks(*numbering_, r_dot_r_)};
 }
 
 template <class Real, class Accumulate>
@@ -36,7 +36,7 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
     Scheduler& scheduler, Preconditioner<Real>& preconditioner, const ConstraintFilter& filter) {
     // The products r . z hold before z is filtered, for r is: r . S z = S r . z = r . z.
     if (preconditioner.coarse() == nullptr) {
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for_each_awake_block(scheduler, *numbering_, [&](int block) {
             kernels_->precondition(arguments_, block);
             filter.apply(z_.data(), block);
         });
@@ -50,13 +50,13 @@ template <class Before>
 typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real, Accumulate>::precondition_with_coarse(
     Scheduler& scheduler, CoarseSpace<Real>& coarse, const ConstraintFilter& filter, const Before& before) {
     const auto modes = coarse.arguments();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         before(block);
         kernels_->restrict_residual(modes, arguments_, block);
         coarse.restrict_to_pieces(r_.data(), block);
     });
     coarse.solve();
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         kernels_->precondition_with_coarse(modes, arguments_, block);
         r_dot_z_[static_cast<std::size_t>(block)] += coarse.move_pieces(r_.data(), z_.data(), block);
         filter.apply(z_.data(), block);
@@ -75,7 +75,7 @@ typename ConjugateGradients<Real, Accumulate>::Products ConjugateGradients<Real,
         filter.apply(matrix.buffer(), block);
     };
     if (preconditioner.coarse() == nullptr) {
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for_each_awake_block(scheduler, *numbering_, [&](int block) {
             complete_product(block);
             kernels_->update_and_precondition(arguments_, block);
             filter.apply(z_.data(), block);
@@ -92,7 +92,7 @@ template <class Real, class Accumulate>
 typename ConjugateGradients<Real, Accumulate>::Corrections ConjugateGradients<Real, Accumulate>::corrections(
     Scheduler& scheduler, std::span<const Accumulate> x) {
     // The sums of products have been taken: their places are free.
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         double correction = 0, solution = 0;
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) {
@@ -102,7 +102,7 @@ typename ConjugateGradients<Real, Accumulate>::Corrections ConjugateGradients<Re
         r_dot_z_[static_cast<std::size_t>(block)] = correction;
         r_dot_r_[static_cast<std::size_t>(block)] = solution;
     });
-    return {*std::max_element(r_dot_z_.begin(), r_dot_z_.end()), *std::max_element(r_dot_r_.begin(), r_dot_r_.end())};
+    return {largest_of_awake_blocks(*numbering_, r_dot_z_), largest_of_awake_blocks(*numbering_, r_dot_r_)};
 }
 
 template <class Real, class Accumulate>
@@ -117,7 +117,7 @@ bool ConjugateGradients<Real, Accumulate>::correct_thin_nodes(Scheduler& schedul
             body(at, static_cast<double>(largest) > limit);
         }
     };
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         double sum = 0;
         for_block_nodes(block, [&](std::size_t at, bool wants_more) {
             for (std::size_t i = at; wants_more && i < at + 3; ++i) {
@@ -126,17 +126,17 @@ bool ConjugateGradients<Real, Accumulate>::correct_thin_nodes(Scheduler& schedul
         });
         r_dot_z_[static_cast<std::size_t>(block)] = sum;
     });
-    const double downhill = sum_in_order(std::span<const double>(r_dot_z_));
+    const double downhill = sum_over_awake_blocks(*numbering_, r_dot_z_);
     constexpr double invisible = 0.01;
     if (!(downhill > 0) || downhill > invisible * r_dot_z) return false;
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         for_block_nodes(block, [&](std::size_t at, bool wants_more) {
             if (!wants_more) std::fill_n(&z_[at], 3, Real(0));
         });
     });
     const double curvature = matrix.product(scheduler, z_.data());
     const auto alpha = static_cast<Accumulate>(curvature > 0 ? downhill / curvature : 0);
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         matrix.merge(block);
         filter.apply(matrix.buffer(), block);
         const std::size_t end = 4 * static_cast<std::size_t>(numbering_->block_begin[block + 1]);
@@ -173,7 +173,7 @@ ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
         for (std::size_t i = 4 * static_cast<std::size_t>(numbering_->block_begin[block]); i < end; ++i) body(i);
     };
     const bool starts_from_zero = std::all_of(x.begin(), x.end(), [](Accumulate value) { return value == 0; });
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         for_block_numbers(block, [&](std::size_t i) {
             r_[i] = b[i];
             p_[i] = 0;
@@ -193,7 +193,7 @@ ConjugateGradientResult ConjugateGradients<Real, Accumulate>::solve(
     if (!starts_from_zero) {
         for (std::size_t i = 0; i < x.size(); ++i) z_[i] = static_cast<Real>(x[i]);
         matrix.product(scheduler, z_.data());
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        for_each_awake_block(scheduler, *numbering_, [&](int block) {
             matrix.merge(block);
             for_block_numbers(block,
                               [&](std::size_t i) { r_[i] = b[i] - static_cast<Accumulate>(matrix.buffer()[i]); });

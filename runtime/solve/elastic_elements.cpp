@@ -1,9 +1,10 @@
 #include "lancet/runtime/solve/elastic_elements.hpp"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "lancet/kernels/error.hpp"
-#include "lancet/runtime/schedule/ordered_sum.hpp"
 #include "lancet/runtime/solve/block_loop.hpp"
 
 namespace lancet::runtime {
@@ -161,9 +162,9 @@ void ElasticElements<Real>::scatter(Scheduler& scheduler, bool is_wanted, const 
                                             .clear_slots = plan.strategy() != ScatterStrategy::node_gather};
     const bool open_first = plan.strategy() == ScatterStrategy::coloring && is_wanted;
     if (open_first) {
-        scheduler.for_each_block(numbering_->blocks(), [&](int block) { kernels_->matrix.open(open, block); });
+        for_each_awake_block(scheduler, *numbering_, [&](int block) { kernels_->matrix.open(open, block); });
     }
-    for_each_color(scheduler, plan, [&](int block) {
+    for_each_color(scheduler, *numbering_, plan, [&](int block) {
         if (is_wanted && !open_first) kernels_->matrix.open(open, block);
         add(block);
     });
@@ -178,7 +179,7 @@ double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* posit
             if (wanted.force || wanted.energy) kernels_->hyperelastic.evaluate(call, block);
             if (wants_tangent) kernels_->hyperelastic.tangent(call, block);
         });
-        return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
+        return wanted.energy ? sum_over_awake_blocks(*numbering_, energy_) : 0.0;
     }
     const auto call = arguments(positions, wanted);
     if (watch_ && wanted.rotation && wanted.keep_gradients) {
@@ -193,7 +194,7 @@ double ElasticElements<Real>::evaluate(Scheduler& scheduler, const double* posit
     } else {
         scatter(scheduler, wanted.force, [&](int block) { kernels_->tetrahedron.elastic(call, block); });
     }
-    return wanted.energy ? sum_in_order(std::span<const double>(energy_)) : 0.0;
+    return wanted.energy ? sum_over_awake_blocks(*numbering_, energy_) : 0.0;
 }
 
 template <class Real>
@@ -206,7 +207,8 @@ void ElasticElements<Real>::watch_deformation() {
 
 template <class Real>
 void ElasticElements<Real>::watch(Scheduler& scheduler, const double* positions, double bound) {
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    if (numbering_->sleeping.are_left_out) std::ranges::fill(has_turned_, std::uint8_t{0});
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         has_turned_[static_cast<std::size_t>(block)] = watch_->has_changed(block, positions, bound) ? 1 : 0;
     });
     for (int block = 0; block < numbering_->blocks(); ++block) {
@@ -251,7 +253,7 @@ void ElasticElements<Real>::invert_diagonal(Scheduler& scheduler, const Diagonal
                                                            .blocks = wanted.blocks};
     const auto add_shares = [&](int block) { kernels_->diagonal.scatter(shares, block); };
     scatter(scheduler, true, add_shares);
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         merge_force(block);
         kernels_->diagonal.keep(inversion, block);
     });
@@ -259,10 +261,57 @@ void ElasticElements<Real>::invert_diagonal(Scheduler& scheduler, const Diagonal
         shares.part = kernels::DiagonalPart::mixed;
         scatter(scheduler, true, add_shares);
     }
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         if (wanted.blocks) merge_force(block);
         kernels_->diagonal.invert(inversion, block);
+        forget_sleeping(inverse, block);
     });
+}
+
+/// What sleeps beside others has not got the shares of blocks that were left out: it gets no correction.
+template <class Real>
+void ElasticElements<Real>::forget_sleeping(std::span<Real> inverse, int block) const {
+    if (!numbering_->sleeping.are_left_out) return;
+    const auto width = static_cast<std::size_t>(batches_.width);
+    for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+        if (!numbering_->sleeping.has(node)) continue;
+        const auto at = static_cast<std::size_t>(node);
+        for (std::size_t k = 0; k < 6; ++k) inverse[(at / width * 6 + k) * width + at % width] = Real(0);
+    }
+}
+
+template <class Real>
+kernels::SleepingNodes ElasticElements<Real>::sleeping(std::vector<std::uint8_t> nodes) const {
+    kernels::SleepingNodes sleeping{.nodes = std::move(nodes)};
+    const auto blocks = static_cast<std::size_t>(numbering_->blocks());
+    const auto first_blocks = static_cast<std::size_t>(numbering_->first_blocks());
+    const auto width = static_cast<std::size_t>(batches_.width);
+    sleeping.blocks.assign(blocks, 0);
+    for (std::size_t block = 0; block < blocks; ++block) {
+        bool sleeps = block < first_blocks;
+        for (std::int32_t node = numbering_->block_begin[block]; node < numbering_->block_begin[block + 1]; ++node) {
+            sleeps = sleeps && (numbering_->user_of_internal[node] < 0 || sleeping.has(node));
+        }
+        const auto end = static_cast<std::size_t>(batches_.block_batch_begin[block + 1]);
+        for (auto batch = static_cast<std::size_t>(batches_.block_batch_begin[block]); batch < end; ++batch) {
+            const Real* weights = &batches_.rest[(batch * kernels::ElementBatches<Real>::rest_entries + 9) * width];
+            for (std::size_t lane = 0; lane < width; ++lane) {
+                if (weights[lane] == 0) continue;  // padding
+                int asleep = 0;
+                for (std::size_t corner = 0; corner < 4; ++corner) {
+                    asleep += sleeping.has(batches_.nodes[(batch * 4 + corner) * width + lane] / 4) ? 1 : 0;
+                }
+                if (asleep != 0 && asleep != 4) {
+                    throw Error("sleep: an element has " + std::to_string(asleep) +
+                                " nodes that are asleep; expected all four or none");
+                }
+                sleeps = sleeps && asleep == 4;
+            }
+        }
+        sleeping.blocks[block] = sleeps ? 1 : 0;
+        if (!sleeps) sleeping.awake_blocks.push_back(static_cast<std::int32_t>(block));
+    }
+    return sleeping;
 }
 
 template <class Real>

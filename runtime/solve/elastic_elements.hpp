@@ -109,6 +109,13 @@ class ElasticElements {
     };
     void invert_diagonal(Scheduler& scheduler, const DiagonalWanted& wanted, std::span<Real> inverse);
 
+    /// The blocks that may be left out while some nodes are asleep, [internal node], and the others. None that is room:
+    /// its rows and elements may be of any node. Throws lancet::Error for an element of which some nodes are asleep and
+    /// others are not.
+    kernels::SleepingNodes sleeping(std::vector<std::uint8_t> nodes) const;
+    /// Takes up that other nodes are asleep than before.
+    void forget_force() noexcept { std::ranges::fill(force_, Real(0)); }
+
     const kernels::ElementBatches<Real>& batches() const noexcept { return batches_; }
     const kernels::KernelSet<Real>& kernels() const noexcept { return *kernels_; }
     const kernels::NodeNumbering& numbering() const noexcept { return *numbering_; }
@@ -132,6 +139,7 @@ class ElasticElements {
     void watch(Scheduler& scheduler, const double* positions, double bound);
     template <class Add>
     void scatter(Scheduler& scheduler, bool is_wanted, const Add& add);
+    void forget_sleeping(std::span<Real> inverse, int block) const;
 
     const kernels::KernelSet<Real>* kernels_;
     const kernels::NodeNumbering* numbering_;

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "lancet/kernels/error.hpp"
-#include "lancet/runtime/schedule/ordered_sum.hpp"
 #include "lancet/runtime/solve/block_loop.hpp"
 #include "lancet/runtime/solve/matrix_free.hpp"
 #include "lancet/runtime/solve/row_operators.hpp"
@@ -76,13 +75,13 @@ double Operator<Real>::product(Scheduler& scheduler, const Real* z) {
         .z = z, .y = y_.data(), .quadratic = quadratic_.data(), .exclusive_slots = exclusive};
     const bool open_first = plan_->strategy() == ScatterStrategy::coloring;
     if (open_first) {
-        scheduler.for_each_block(numbering().blocks(), [&](int block) { kernels().matrix.open(open, block); });
+        for_each_awake_block(scheduler, numbering(), [&](int block) { kernels().matrix.open(open, block); });
     }
-    for_each_color(scheduler, *plan_, [&](int block) {
+    for_each_color(scheduler, numbering(), *plan_, [&](int block) {
         if (!open_first) kernels().matrix.open(open, block);
         add_product(product, block);
     });
-    return sum_in_order(std::span<const double>(quadratic_));
+    return sum_over_awake_blocks(numbering(), quadratic_);
 }
 
 template <class Real>

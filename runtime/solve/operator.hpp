@@ -54,6 +54,8 @@ class Operator {
     /// Completes the nodes of a block of buffer().
     void merge(int block);
     Real* buffer() noexcept { return y_.data(); }
+    /// With the slots of the blocks.
+    std::size_t buffer_size() const noexcept { return y_.size(); }
 
     /// Nodal masses times their factor, [node].
     const Real* scaled_mass() const noexcept { return scaled_mass_.data(); }

@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "lancet/runtime/solve/block_loop.hpp"
+
 namespace lancet::runtime {
 
 using Eigen::Matrix3d;
@@ -31,8 +33,14 @@ void RigidModes<Real>::clear() {
 template <class Real>
 void RigidModes<Real>::set(Scheduler& scheduler, const double* positions) {
     scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+        const bool is_left_out = numbering_->sleeping.leave_out(block);
         aggregates_->for_each_of_block(block, [&](std::int32_t a) {
-            if (aggregates_->is_leader(a)) set_leader(a, positions);
+            if (!aggregates_->is_leader(a)) return;
+            if (is_left_out) {
+                basis_[static_cast<std::size_t>(a)].setZero();
+            } else {
+                set_leader(a, positions);
+            }
         });
     });
 }
@@ -41,8 +49,10 @@ template <class Real>
 void RigidModes<Real>::set_leader(std::int32_t leader, const double* positions) {
     Vector3d centre = Vector3d::Zero();
     int count = 0;
+    bool sleeps = false;
     aggregates_->for_each_node_led(leader, [&](std::int32_t node) {
         centre += nodal_vector(positions, node);
+        sleeps = sleeps || numbering_->sleeping.has(node);
         ++count;
     });
     centre /= std::max(count, 1);
@@ -56,7 +66,7 @@ void RigidModes<Real>::set_leader(std::int32_t leader, const double* positions) 
     // Rotations about principal axes of no extent move nothing: a node alone has none, collinear nodes two.
     RigidMatrix& basis = basis_[static_cast<std::size_t>(leader)];
     basis.setZero();
-    if (count == 0) return;
+    if (count == 0 || sleeps) return;
     basis.topLeftCorner<3, 3>().diagonal().setConstant(1 / std::sqrt(std::max(count, 1)));
     Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
     axes.computeDirect(inertia);
@@ -98,10 +108,10 @@ double RigidModes<Real>::change_of_block(int block, const double* positions) con
 template <class Real>
 double RigidModes<Real>::change(Scheduler& scheduler, const double* positions) {
     if (change_.empty()) return 0;  // no free node
-    scheduler.for_each_block(numbering_->blocks(), [&](int block) {
+    for_each_awake_block(scheduler, *numbering_, [&](int block) {
         change_[static_cast<std::size_t>(block)] = change_of_block(block, positions);
     });
-    return std::sqrt(std::max(0.0, *std::max_element(change_.begin(), change_.end())));
+    return std::sqrt(largest_of_awake_blocks(*numbering_, change_));
 }
 
 template class RigidModes<float>;

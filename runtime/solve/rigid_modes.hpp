@@ -33,7 +33,8 @@ class RigidModes {
     /// xyz_, from the centre of all that moves with the node.
     const kernels::AlignedVector<Real>& offset() const noexcept { return offset_; }
     kernels::AlignedVector<Real>& offset() noexcept { return offset_; }
-    /// [aggregate] from orthonormal modes to motions; zero columns for modes that are left out, and what follows.
+    /// [aggregate] from orthonormal modes to motions; zero columns for modes that are left out. What follows another
+    /// aggregate, or is asleep, has none.
     const std::vector<RigidMatrix>& basis() const noexcept { return basis_; }
     std::vector<RigidMatrix>& basis() noexcept { return basis_; }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lancet/runtime/solve/block_loop.hpp"
+
 namespace lancet::runtime {
 
 using kernels::RowContent;
@@ -109,7 +111,7 @@ void BlockMatrix<Real>::assemble(Scheduler& scheduler, double stiffness_factor, 
                                                      .layout = elements_->layout()};
     const std::span<const std::uint8_t> stale =
         only_stale ? elements_->stale_blocks() : std::span<const std::uint8_t>();
-    scheduler.for_each_block(elements_->numbering().blocks(), [&](int block) {
+    for_each_awake_block(scheduler, elements_->numbering(), [&](int block) {
         if (!stale.empty() && stale[static_cast<std::size_t>(block)] == 0) return;
         elements_->kernels().matrix.assemble(arguments, block);
     });

@@ -173,6 +173,50 @@ TEST_P(StepAllocation, IsNone) {
     }
 }
 
+TEST_P(StepAllocation, IsNoneWhileSomeSleep) {
+#if !defined(LANCET_COUNTS_MALLOC)
+    GTEST_SKIP() << "not run: malloc cannot be counted in this build";
+#endif
+    const Variant& variant = GetParam();
+    ReferenceSolid solid = jittered_bar({10, 3, 2}, 0.1, 0.1, 141);
+    const std::size_t half = solid.nodes.size(), elements = solid.tetrahedra.size();
+    for (std::size_t node = 0; node < half; ++node) {
+        const Point at = solid.nodes[node];
+        solid.nodes.push_back({at[0] + 2, at[1], at[2]});
+    }
+    for (std::size_t element = 0; element < elements; ++element) {
+        Tetrahedron nodes = solid.tetrahedra[element];
+        for (std::int32_t& node : nodes) node += static_cast<std::int32_t>(half);
+        solid.tetrahedra.push_back(nodes);
+        solid.regions.push_back(solid.regions[element]);
+    }
+    runtime::Scene scene = scene_of(solid);
+    scene.gravity = {0, -9.81, 0};
+    runtime::Settings settings;
+    settings.matrix = variant.matrix;
+    settings.preconditioner = variant.preconditioner;
+    settings.scalar = variant.scalar;
+    settings.scatter = variant.scatter;
+    settings.mass = variant.mass;
+    settings.coarse_change = 0;
+    settings.numbering = {.nodes_per_block = 24, .nodes_per_aggregate = variant.nodes_per_aggregate};
+    const auto scheduler = runtime::make_scheduler(variant.scheduler, variant.threads);
+    const auto body = make_body(scene, settings, *scheduler);
+    std::vector<std::uint8_t> asleep(body->nodes(), 0);
+    std::fill(asleep.begin() + static_cast<std::ptrdiff_t>(half), asleep.end(), std::uint8_t{1});
+    body->hold(10, {1.05, 0.02, 0});
+    body->step(*scheduler);
+    body->set_asleep(asleep);
+    for (int step = 0; step < 2; ++step) body->step(*scheduler);
+    const long before = allocations;
+    for (int step = 0; step < 10; ++step) {
+        body->hold(10, {1.05, 0.02 + 0.01 * step, 0});
+        body->step(*scheduler);
+    }
+    EXPECT_EQ(allocations - before, 0) << "in ten steps";
+    EXPECT_GT(body->totals().sleeping_blocks, 0);
+}
+
 // A world with everything but a cut: two bodies that touch, a tool that pushes, surfaces, collision, force feedback.
 TEST(SimulationAllocation, IsNone) {
 #if !defined(LANCET_COUNTS_MALLOC)
