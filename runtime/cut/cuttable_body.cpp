@@ -177,6 +177,7 @@ void CuttableBody::rebuild(Scheduler& scheduler, const mesh::CutMesh& mesh, cons
     body->set_positions(positions);
     body->set_velocities(velocities);
     elements_ = std::move(elements);
+    if (!can_change()) components_ = DividedComponents(mesh, elements_, held_nodes(scene_));
     body_ = std::move(body);
     has_loads_ = true;
 }

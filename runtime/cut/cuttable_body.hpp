@@ -90,13 +90,17 @@ class CuttableBody {
     /// What loads the nodes of the body now: the scene's own, and those on points.
     std::vector<Point> loads() const;
 
+    /// [node of the body] the connected component of parts that it is of, from 0; a node of no part is one by itself.
+    std::vector<std::int32_t> components() const { return components_.of_nodes(); }
+    /// The nodes of the body that a node of the mesh has become.
+    std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
+
     /// Where a point of the material is now.
     Point position(std::int32_t element, const mesh::Barycentric& place) const;
 
   private:
     void apply_loads();
     void stop(std::span<const Crumb> crumbs);
-    std::vector<std::int32_t> copies_of_node(std::int32_t node) const;
     /// The momentum of all copies of a node of the mesh, and their mass.
     struct NodeMomentum {
         Point momentum{};

@@ -129,6 +129,8 @@ DividedComponents::DividedComponents(const mesh::CutMesh& cut, const DividedElem
     const mesh::Components components = mesh::components(copies + elements.opened_from().size(), lanes);
     components_.resize(static_cast<std::size_t>(components.count));
     label_.assign(components.of_node.begin(), components.of_node.begin() + static_cast<std::ptrdiff_t>(copies));
+    label_of_opening_.assign(components.of_node.begin() + static_cast<std::ptrdiff_t>(copies),
+                             components.of_node.end());
     for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
         components_[static_cast<std::size_t>(components.of_element[lane])].volume += volumes[lane];
         whole_ += volumes[lane];
@@ -192,6 +194,12 @@ void DividedComponents::update(const mesh::CutMesh& cut, const DividedElements& 
     Fronts fronts(cut, elements);
     for (const CopyName name : elements.changed_copies()) fronts.add(name, label_[static_cast<std::size_t>(name)]);
     for (std::vector<CopyName>& names : fronts.run()) take_off(cut, piece_of(cut, elements, std::move(names)));
+}
+
+std::vector<std::int32_t> DividedComponents::of_nodes() const {
+    std::vector<std::int32_t> components = label_;
+    components.insert(components.end(), label_of_opening_.begin(), label_of_opening_.end());
+    return components;
 }
 
 std::vector<Crumb> DividedComponents::crumbs(const mesh::CutMesh& cut, const DividedElements& elements,

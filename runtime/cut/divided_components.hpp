@@ -23,6 +23,10 @@ class DividedComponents {
     /// Takes up a cut after `elements` has.
     void update(const mesh::CutMesh& cut, const DividedElements& elements);
 
+    /// [node of the body] the component that it is of. Numbers are kept as long as nothing comes off and no blended
+    /// front is there.
+    std::vector<std::int32_t> of_nodes() const;
+
     /// As runtime::crumbs finds them in the divided scene.
     std::vector<Crumb> crumbs(const mesh::CutMesh& cut, const DividedElements& elements, double largest) const;
 
@@ -42,8 +46,9 @@ class DividedComponents {
     void take_off(const mesh::CutMesh& cut, const Piece& piece);
 
     std::vector<bool> is_held_;
-    double whole_ = 0;                 ///< volume of the body
-    std::vector<std::int32_t> label_;  ///< [copy] its component
+    double whole_ = 0;                            ///< volume of the body
+    std::vector<std::int32_t> label_;             ///< [copy] its component
+    std::vector<std::int32_t> label_of_opening_;  ///< [node that opens] likewise
     bool has_openings_ = false;
     std::vector<Component> components_;
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lancet/kernels/error.hpp"
+#include "lancet/mesh/components.hpp"
 #include "lancet/runtime/cut/divided_scene.hpp"
 #include "lancet/runtime/simulate/loads.hpp"
 
@@ -52,6 +53,19 @@ SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const
     scene_loads_ = external_loads(definition_.scene);
     start_loads();
     find_mean_mass();
+    find_islands();
+}
+
+void SimulatedBody::find_islands() {
+    std::vector<std::int32_t> restless;
+    for (const PrescribedDisplacement& prescribed : definition_.scene.prescribed) {
+        // What is prescribed in time goes on by itself.
+        const auto nodes =
+            cuttable_ ? cuttable_->copies_of_node(prescribed.node) : std::vector<std::int32_t>{prescribed.node};
+        restless.insert(restless.end(), nodes.begin(), nodes.end());
+    }
+    islands_ = Islands(body(), cuttable_ ? cuttable_->components() : mesh::components(definition_.scene.mesh).of_node,
+                       restless);
 }
 
 void SimulatedBody::find_mean_mass() {
@@ -63,12 +77,14 @@ void SimulatedBody::find_mean_mass() {
 }
 
 void SimulatedBody::run(StepStage stage, Scheduler& scheduler) {
-    if (is_asleep_) return;
+    if (is_asleep()) return;
     const StepReport report = body().run(stage, scheduler);
     if (stage == StepStage::update && report.lost) ++lost_steps_;
 }
 
 CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip) {
+    Islands::Before before = islands_.before(body());
+    before.kept_nodes = static_cast<std::int32_t>(cuttable_->mesh().node_of_copy().size());
     CutUpdate update = blade.draw(*cuttable_, scheduler, heel, tip);
     if (update.mesh.touched_elements > 0) {
         ++cuts_;
@@ -77,7 +93,15 @@ CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& h
         start_loads();
         body().set_loads(loads_);
         find_mean_mass();
-        wake();
+        find_islands();
+        std::vector<std::int32_t> touched;
+        for (const std::int32_t element : update.mesh.elements) {
+            for (const std::int32_t part : cuttable_->mesh().parts_of_element(element)) {
+                const mesh::Tetrahedron& copies = nodes_of(part);
+                touched.insert(touched.end(), copies.begin(), copies.end());
+            }
+        }
+        islands_.go_on(body(), before, touched);
     }
     return update;
 }
@@ -112,9 +136,13 @@ void SimulatedBody::start_loads() {
 
 void SimulatedBody::set_loads(std::span<const Point> loads) {
     body().set_loads(loads);
+    std::vector<std::int32_t> changed;
+    for (std::size_t node = 0; node < loads.size(); ++node) {
+        if (loads[node] != scene_loads_[node]) changed.push_back(static_cast<std::int32_t>(node));
+    }
     scene_loads_.assign(loads.begin(), loads.end());
     start_loads();
-    wake();
+    islands_.wake(body(), changed);
 }
 
 void SimulatedBody::clear_forces() {
@@ -128,13 +156,21 @@ void SimulatedBody::clear_forces() {
 
 void SimulatedBody::add_force(const AttachedPoint& point, const Point& force, bool wakes) {
     if (force == Point{}) return;
-    if (wakes) wake();
+    if (wakes) {
+        for_each_node(point, [&](std::int32_t node, double) { islands_.wake(body(), std::span(&node, 1)); });
+    }
     for_each_node(point, [&](std::int32_t node, double weight) {
         const auto at = static_cast<std::size_t>(node);
         if (is_forced_[at] == 0) forced_.push_back(node);
         is_forced_[at] = 1;
         for (std::size_t axis = 0; axis < 3; ++axis) loads_[at][axis] += weight * force[axis];
     });
+}
+
+bool SimulatedBody::is_quiet(const AttachedPoint& point) const {
+    bool is_quiet = true;
+    for_each_node(point, [&](std::int32_t node, double) { is_quiet = is_quiet && islands_.is_quiet(body(), node); });
+    return is_quiet;
 }
 
 void SimulatedBody::apply_forces() {
@@ -196,22 +232,12 @@ void SimulatedBody::publish(std::int64_t step, double time) {
 }
 
 void SimulatedBody::rest(double world_step) {
-    // What is prescribed in time goes on by itself.
-    if (!(sleep_.speed > 0) || is_asleep_ || !definition_.scene.prescribed.empty()) return;
-    velocities_.resize(body().nodes());
-    body().velocities(velocities_);
-    double square = 0;
-    for (const Point& v : velocities_) square = std::max(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    rested_ = square < sleep_.speed * sleep_.speed ? rested_ + world_step : 0;
-    if (rested_ < sleep_.after) return;
-    is_asleep_ = true;
-    std::ranges::fill(velocities_, Point{});
-    body().set_velocities(velocities_);
+    if (!(sleep_.speed > 0) || is_asleep()) return;
+    islands_.rest(body(), sleep_, world_step);
 }
 
-void SimulatedBody::wake() noexcept {
-    rested_ = 0;
-    is_asleep_ = false;
+void SimulatedBody::wake() {
+    islands_.wake(body());
 }
 
 }  // namespace lancet::runtime

@@ -9,6 +9,7 @@
 
 #include "lancet/runtime/cut/blade.hpp"
 #include "lancet/runtime/cut/cuttable_body.hpp"
+#include "lancet/runtime/simulate/islands.hpp"
 #include "lancet/runtime/simulate/snapshots.hpp"
 #include "lancet/runtime/simulate/surface.hpp"
 #include "lancet/runtime/simulate/tool_spring.hpp"
@@ -27,12 +28,6 @@ struct BodyDefinition {
     std::optional<mesh::TriangleMesh> surface{};
     bool collides_with_others = true;   ///< that do, too
     bool collides_with_itself = false;  ///< with the walls of its wounds, for example
-};
-
-/// When a body that hardly moves is not computed any more. It wakes by a load, a touch or a cut.
-struct SleepOptions {
-    double speed = 0;    ///< m / s: of the fastest node; 0: bodies do not sleep
-    double after = 0.5;  ///< s of such rest
 };
 
 /// The motion of a body as it was at some time, for tasks that run while the body goes on.
@@ -68,7 +63,7 @@ class SimulatedBody {
     CuttableBody* cuttable() noexcept { return cuttable_.get(); }
     const CuttableBody* cuttable() const noexcept { return cuttable_.get(); }
 
-    /// One stage of one step; nothing while asleep.
+    /// One stage of one step; nothing while all islands are asleep.
     void run(StepStage stage, Scheduler& scheduler);
 
     /// Steps in which no finite state was found: the body was stopped where it was.
@@ -85,17 +80,17 @@ class SimulatedBody {
     void renew_surface(bool is_solid);
     std::shared_ptr<const CarriedSurface> surface() const noexcept { return surface_; }
 
-    /// Dead loads on the nodes of the body as it is now, in place of those of its scene. Wakes the body. After a cut
-    /// the scene's own act again, on the nodes that there are then. Throws lancet::Error as DeformableBody::set_loads
-    /// does.
+    /// Dead loads on the nodes of the body as it is now, in place of those of its scene. Wakes the islands whose loads
+    /// are others than before. After a cut the scene's own act again, on the nodes that there are then. Throws
+    /// lancet::Error as DeformableBody::set_loads does.
     void set_loads(std::span<const Point> loads);
 
     /// Starts collecting forces for the next step.
     void clear_forces();
-    /// A force on a point of the material. Where it `wakes`, the body wakes.
+    /// A force on a point of the material. Where it `wakes`, the island of the point wakes.
     void add_force(const AttachedPoint& point, const Point& force, bool wakes = true);
-    /// Asleep, or on the way to it.
-    bool is_quiet() const noexcept { return is_asleep_ || rested_ > 0; }
+    /// Whether all that a point of the material hangs on is asleep, or on the way to it.
+    bool is_quiet(const AttachedPoint& point) const;
     double mean_mass() const noexcept { return mean_mass_; }
     /// Hands the collected forces to the body, beside the loads of its scene.
     void apply_forces();
@@ -125,12 +120,23 @@ class SimulatedBody {
     Snapshots<MotionSnapshot>::Reader latest() noexcept { return snapshots_.latest(); }
     SurfaceSnapshots& shapes() noexcept { return shapes_; }
 
-    /// Falls asleep, or counts towards it, after a world step.
+    /// Lets islands fall asleep, or count towards it, after a world step. Islands in which something is prescribed stay
+    /// awake.
     void rest(double world_step);
-    void wake() noexcept;
-    bool is_asleep() const noexcept { return is_asleep_; }
+    /// Wakes all islands.
+    void wake();
+    /// Whether all islands are asleep.
+    bool is_asleep() const { return islands_.are_asleep(body()); }
+
+    /// Islands are what hangs together: one, where nothing has been cut off and the mesh is connected. After a cut they
+    /// are numbered anew.
+    int islands() const noexcept { return islands_.count(); }
+    bool is_asleep(int island) const { return islands_.is_asleep(body(), island); }
+    /// The island of a node of the body; -1 for a node of no element.
+    std::int32_t island_of(std::int32_t node) const { return islands_.of_node(node); }
 
   private:
+    void find_islands();
     void find_mean_mass();
     /// Forgets collected forces: the loads are those of the scene.
     void start_loads();
@@ -159,9 +165,7 @@ class SimulatedBody {
     std::vector<double> shares_;           ///< [node] of springs, while they are stiffened
     Snapshots<MotionSnapshot> snapshots_;
     SurfaceSnapshots shapes_;
-    std::vector<Point> velocities_;  ///< where bodies may sleep
-    double rested_ = 0;              ///< s
-    bool is_asleep_ = false;
+    Islands islands_;
 };
 
 }  // namespace lancet::runtime

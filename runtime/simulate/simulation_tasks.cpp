@@ -114,8 +114,8 @@ void Simulation::push_apart() {
         // Several vertices may be in one element: less than a tool gets, see SimulatedBody::stiffen.
         const double stiffness = std::min(first.mean_mass(), second.mean_mass()) / (4 * h * h);
         const Point force = scale(contact.normal, stiffness * depth);
-        first.add_force(contact.on_first, force, !second.is_quiet());
-        second.add_force(contact.on_second, scale(force, -1), !first.is_quiet());
+        first.add_force(contact.on_first, force, !second.is_quiet(contact.on_second));
+        second.add_force(contact.on_second, scale(force, -1), !first.is_quiet(contact.on_first));
     }
 }
 
