@@ -12,7 +12,6 @@ std::vector<Item> all_items(bool is_quick) {
 
 std::vector<Remark> remarks() {
     return {
-        {"islands at rest sleep", "whole bodies sleep, not parts of one that are apart"},
         {"conjugate gradients start from the last solution",
          "no switch: the unknown is the change of velocity, from zero, and so the start is the last velocity; nothing "
          "of an older solve is kept"},

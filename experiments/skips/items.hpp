@@ -30,7 +30,7 @@ struct Remark {
 
 /// What a body leaves out: fixed nodes, constant operators, rotations, refreshes, iterations.
 std::vector<Item> items_of_body(bool is_quick);
-/// What a world leaves out: sleeping bodies, collision, frames.
+/// What a world leaves out: sleeping bodies and islands, collision, frames.
 std::vector<Item> items_of_world(bool is_quick);
 /// What a body that is not cut leaves out, and what a cut does.
 std::vector<Item> items_of_cuts(bool is_quick);

@@ -1,4 +1,7 @@
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "lancet/experiments/skips/items.hpp"
 #include "lancet/mesh/generate/box.hpp"
@@ -39,6 +42,46 @@ std::unique_ptr<Runner> four_at_rest(bool is_quick, double speed) {
     };
     constexpr int until_at_rest = 125;  // 5 s
     return run_world({.collision_rate = 0, .sleep = {.speed = speed, .after = 0.2}}, describe, 1, until_at_rest);
+}
+
+/// The bar, cut in two over a floor. After 10 s the severed half lies there at rest, while a probe goes up and down on
+/// the half that is held.
+std::unique_ptr<Runner> severed_bar(bool is_quick, double speed) {
+    const auto describe = [=](Simulation& world) {
+        runtime::Scene scene = bar(is_quick);
+        scene.floor = runtime::Floor{.point = {0, -0.5, 0}, .normal = {0, 1, 0}};
+        scene.rayleigh_mass = 1;
+        const int body = world.add_body({.name = "bar", .scene = std::move(scene), .can_be_cut = true});
+        runtime::Blade blade;
+        for (const double z : {-0.3, 1.1}) {
+            world.body(body).draw(blade, one_thread(), {2.03, -0.3, z}, {2.03, 1.1, z});
+        }
+        constexpr double radius = 0.2, period = 0.8, step = 0.04, end = 60;
+        const int tool = world.add_tool({.name = "probe", .shape = runtime::SphereTool{.radius = radius}});
+        runtime::ToolPath path;
+        for (double time = 0; time < end; time += step) {
+            const double height = 0.8 + radius - 0.15 * (1 - std::cos(2 * std::numbers::pi * time / period));
+            path.push_back({.time = time, .pose = {.position = {1, height, 0.4}}});
+        }
+        world.play(tool, path);
+    };
+    constexpr int until_at_rest = 250;
+    return run_world({.sleep = {.speed = speed, .after = 0.2}}, describe, 1, until_at_rest);
+}
+
+/// The bar, held at its end, has come to rest; then its outer half is cut off and falls.
+std::unique_ptr<Runner> falling_half(bool is_quick, double speed) {
+    const auto describe = [=](Simulation& world) {
+        runtime::Scene scene = bar(is_quick);
+        scene.rayleigh_mass = 5;
+        const int body = world.add_body({.name = "bar", .scene = std::move(scene), .can_be_cut = true});
+        runtime::Blade blade;
+        for (const double z : {-0.3, 1.1}) {
+            world.body(body).draw(blade, one_thread(), {2.03, -0.3, z}, {2.03, 1.1, z});
+        }
+    };
+    constexpr int until_held_rests = 125;  // 5 s
+    return run_world({.collision_rate = 0, .sleep = {.speed = speed, .after = 0.2}}, describe, 1, until_held_rests);
 }
 
 }  // namespace
@@ -82,6 +125,16 @@ std::vector<Item> items_of_world(bool is_quick) {
          .scene = "four bars at rest, one of 1,600 elements that swings; no collision",
          .with = [=] { return four_at_rest(is_quick, 1e-3); },
          .without = [=] { return four_at_rest(is_quick, 0); }},
+        {.name = "an island at rest sleeps: what was cut off",
+         .toggle = "SimulationOptions::sleep.speed = 1e-3 m/s; without: 0",
+         .scene = bar_name + " cut in two: one half lies on a floor, the other is held and poked",
+         .with = [=] { return severed_bar(is_quick, 1e-3); },
+         .without = [=] { return severed_bar(is_quick, 0); }},
+        {.name = "an island at rest sleeps: what is held",
+         .toggle = "SimulationOptions::sleep.speed = 1e-3 m/s; without: 0",
+         .scene = bar_name + " cut in two: one half falls, the other is held",
+         .with = [=] { return falling_half(is_quick, 1e-3); },
+         .without = [=] { return falling_half(is_quick, 0); }},
         {.name = "no collider, no collision task",
          .toggle = "no Simulation::add_tool; without: a tool, 200 Hz",
          .scene = bar_name + "; the tool does not touch",

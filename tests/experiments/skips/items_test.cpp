@@ -79,7 +79,7 @@ TEST(Items, HaveNamesOfTheirOwn) {
         EXPECT_FALSE(each.toggle.empty());
         EXPECT_FALSE(each.scene.empty());
     }
-    EXPECT_EQ(names.size(), 13U);
+    EXPECT_EQ(names.size(), 15U);
     EXPECT_FALSE(remarks().empty());
 }
 
