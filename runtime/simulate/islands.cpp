@@ -67,6 +67,7 @@ void Islands::wake(DeformableBody& body, std::span<const std::int32_t> nodes) {
 }
 
 void Islands::wake(DeformableBody& body) {
+    if (islands_.empty()) return;
     for (Island& island : islands_) island.rested = 0;
     asleep_.assign(islands_.size(), 0);
     put_to_sleep(body, asleep_);

@@ -27,7 +27,9 @@ class Islands {
 
     int count() const noexcept { return static_cast<int>(islands_.size()); }
     /// The island of a node; -1: none. They are numbered in the order of their lowest nodes.
-    std::int32_t of_node(std::int32_t node) const { return of_node_[static_cast<std::size_t>(node)]; }
+    std::int32_t of_node(std::int32_t node) const {
+        return of_node_.empty() ? -1 : of_node_[static_cast<std::size_t>(node)];
+    }
 
     bool is_asleep(const DeformableBody& body, int island) const;
     bool are_asleep(const DeformableBody& body) const;

@@ -53,7 +53,7 @@ SimulatedBody::SimulatedBody(BodyDefinition definition, double world_step, const
     scene_loads_ = external_loads(definition_.scene);
     start_loads();
     find_mean_mass();
-    find_islands();
+    if (may_sleep()) find_islands();
 }
 
 void SimulatedBody::find_islands() {
@@ -83,8 +83,11 @@ void SimulatedBody::run(StepStage stage, Scheduler& scheduler) {
 }
 
 CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& heel, const Point& tip) {
-    Islands::Before before = islands_.before(body());
-    before.kept_nodes = static_cast<std::int32_t>(cuttable_->mesh().node_of_copy().size());
+    Islands::Before before;
+    if (may_sleep()) {
+        before = islands_.before(body());
+        before.kept_nodes = static_cast<std::int32_t>(cuttable_->mesh().node_of_copy().size());
+    }
     CutUpdate update = blade.draw(*cuttable_, scheduler, heel, tip);
     if (update.mesh.touched_elements > 0) {
         ++cuts_;
@@ -93,17 +96,21 @@ CutUpdate SimulatedBody::draw(Blade& blade, Scheduler& scheduler, const Point& h
         start_loads();
         body().set_loads(loads_);
         find_mean_mass();
-        find_islands();
-        std::vector<std::int32_t> touched;
-        for (const std::int32_t element : update.mesh.elements) {
-            for (const std::int32_t part : cuttable_->mesh().parts_of_element(element)) {
-                const mesh::Tetrahedron& copies = nodes_of(part);
-                touched.insert(touched.end(), copies.begin(), copies.end());
-            }
-        }
-        islands_.go_on(body(), before, touched);
+        if (may_sleep()) follow_cut(before, update);
     }
     return update;
+}
+
+void SimulatedBody::follow_cut(const Islands::Before& before, const CutUpdate& update) {
+    find_islands();
+    std::vector<std::int32_t> touched;
+    for (const std::int32_t element : update.mesh.elements) {
+        for (const std::int32_t part : cuttable_->mesh().parts_of_element(element)) {
+            const mesh::Tetrahedron& copies = nodes_of(part);
+            touched.insert(touched.end(), copies.begin(), copies.end());
+        }
+    }
+    islands_.go_on(body(), before, touched);
 }
 
 void SimulatedBody::renew_surface(bool is_solid) {
@@ -232,7 +239,7 @@ void SimulatedBody::publish(std::int64_t step, double time) {
 }
 
 void SimulatedBody::rest(double world_step) {
-    if (!(sleep_.speed > 0) || is_asleep()) return;
+    if (!may_sleep() || is_asleep()) return;
     islands_.rest(body(), sleep_, world_step);
 }
 

@@ -129,14 +129,17 @@ class SimulatedBody {
     bool is_asleep() const { return islands_.are_asleep(body()); }
 
     /// Islands are what hangs together: one, where nothing has been cut off and the mesh is connected. After a cut they
-    /// are numbered anew.
+    /// are numbered anew. None are known where nothing may sleep (SleepOptions).
     int islands() const noexcept { return islands_.count(); }
     bool is_asleep(int island) const { return islands_.is_asleep(body(), island); }
     /// The island of a node of the body; -1 for a node of no element.
     std::int32_t island_of(std::int32_t node) const { return islands_.of_node(node); }
 
   private:
+    bool may_sleep() const noexcept { return sleep_.speed > 0; }
     void find_islands();
+    /// Finds the islands that a cut has left, of which those that it has touched wake.
+    void follow_cut(const Islands::Before& before, const CutUpdate& update);
     void find_mean_mass();
     /// Forgets collected forces: the loads are those of the scene.
     void start_loads();

@@ -87,6 +87,20 @@ struct Severed {
     }
 };
 
+TEST(IslandSleep, NobodyKnowsIslandsWhereNothingMaySleep) {
+    const auto scheduler = make_scheduler(SchedulerKind::serial, 1);
+    Simulation simulation(*scheduler, {.time_step = time_step});
+    SimulatedBody& body = simulation.body(simulation.add_body(long_bar()));
+    EXPECT_EQ(body.islands(), 0);
+    sever(body, *scheduler, 1.25);
+    EXPECT_EQ(body.islands(), 0);
+    body.wake();
+    body.set_loads(std::vector<Point>(body.body().nodes(), Point{0, -1, 0}));
+    for (int step = 0; step < 3; ++step) simulation.step();
+    EXPECT_EQ(body.body().totals().steps, 3);
+    EXPECT_FALSE(body.is_asleep());
+}
+
 TEST(IslandSleep, ALoadWakesItsIslandAlone) {
     Severed scene;
     SimulatedBody& body = scene.body;
