@@ -72,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Arithmetics, SeveredAggregates,
                          });
 
 // The body laid out anew divides what hangs together into aggregates of about equal size; in the one that is cut in
-// place small pieces follow larger ones: other spaces, of about the same quality. Without the pieces it takes 1.7 to 2.9
-// times as many iterations here.
+// place small pieces follow larger ones: other spaces, of about the same quality. Without the pieces it takes 1.7
+// to 2.9 times as many iterations here.
 TEST_P(SeveredAggregates, CostNoIterations) {
     for (const int nodes_per_aggregate : {24, 1000}) {
         SCOPED_TRACE(std::to_string(nodes_per_aggregate) + " nodes to an aggregate");
