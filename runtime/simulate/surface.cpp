@@ -39,6 +39,13 @@ mesh::MaterialPoint corner_of(const mesh::Tetrahedron& nodes, std::int32_t eleme
     return point;
 }
 
+/// Of unit length in double, what is so in float; zero stays zero. One step of Newton's method for 1 / |n| from 1: an
+/// error e of the length becomes 3 e^2 / 2.
+void make_unit(Point& normal) {
+    const double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+    for (double& component : normal) component *= 1.5 - 0.5 * square;
+}
+
 void find_neighbours(CarriedSurface& surface) {
     surface.corners = {surface.vertices.size(), surface.triangles};
     surface.rings = kernels::vertex_rings(surface.vertices.size(), surface.triangles);
@@ -137,6 +144,9 @@ void SurfaceEvaluator::find_normals(Scheduler& scheduler, const CarriedSurface& 
         const int begin = block * kernels::VertexRings::batches_per_block;
         const int end = std::min(rings.batches(), begin + kernels::VertexRings::batches_per_block);
         kernels_.vertex_normals(arguments, begin, end);
+        for (int slot = begin * kernels::VertexRings::lanes; slot < end * kernels::VertexRings::lanes; ++slot) {
+            make_unit(shape.normals[static_cast<std::size_t>(rings.vertices[static_cast<std::size_t>(slot)] / 3)]);
+        }
         // What float cannot tell is found in double, vertex by vertex.
         for (int batch = begin; batch < end; ++batch) {
             for (unsigned lanes = doubtful_[static_cast<std::size_t>(batch)]; lanes != 0; lanes &= lanes - 1) {

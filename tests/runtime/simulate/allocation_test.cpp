@@ -125,6 +125,18 @@ TEST(AllocationCount, SeesEveryWayToAllocate) {
     EXPECT_GE(count([] { const Eigen::VectorXd some = Eigen::VectorXd::Zero(1000); }), 1);
 }
 
+runtime::Settings settings_of(const Variant& variant) {
+    runtime::Settings settings;
+    settings.matrix = variant.matrix;
+    settings.preconditioner = variant.preconditioner;
+    settings.scalar = variant.scalar;
+    settings.scatter = variant.scatter;
+    settings.mass = variant.mass;
+    settings.coarse_change = 0;  // refreshed at every step
+    settings.numbering = {.nodes_per_block = 24, .nodes_per_aggregate = variant.nodes_per_aggregate};
+    return settings;
+}
+
 TEST_P(StepAllocation, IsNone) {
 #if !defined(LANCET_COUNTS_MALLOC)
     GTEST_SKIP() << "not run: malloc cannot be counted in this build";
@@ -135,16 +147,8 @@ TEST_P(StepAllocation, IsNone) {
     runtime::Scene scene = scene_of(solid);
     scene.gravity = {0, -9.81, 0};
     scene.rayleigh_stiffness = 0.001;
-    runtime::Settings settings;
-    settings.matrix = variant.matrix;
-    settings.preconditioner = variant.preconditioner;
-    settings.scalar = variant.scalar;
-    settings.scatter = variant.scatter;
-    settings.mass = variant.mass;
-    settings.coarse_change = 0;  // refreshed at every step
-    settings.numbering = {.nodes_per_block = 24, .nodes_per_aggregate = variant.nodes_per_aggregate};
     const auto scheduler = runtime::make_scheduler(variant.scheduler, variant.threads);
-    const auto body = make_body(scene, settings, *scheduler);
+    const auto body = make_body(scene, settings_of(variant), *scheduler);
     if (variant.preconditioner == runtime::PreconditionerKind::coarse) {
         ASSERT_EQ(body->coarse_unknowns() > 120, variant.nodes_per_aggregate == 4);
     }
@@ -192,16 +196,8 @@ TEST_P(StepAllocation, IsNoneWhileSomeSleep) {
     }
     runtime::Scene scene = scene_of(solid);
     scene.gravity = {0, -9.81, 0};
-    runtime::Settings settings;
-    settings.matrix = variant.matrix;
-    settings.preconditioner = variant.preconditioner;
-    settings.scalar = variant.scalar;
-    settings.scatter = variant.scatter;
-    settings.mass = variant.mass;
-    settings.coarse_change = 0;
-    settings.numbering = {.nodes_per_block = 24, .nodes_per_aggregate = variant.nodes_per_aggregate};
     const auto scheduler = runtime::make_scheduler(variant.scheduler, variant.threads);
-    const auto body = make_body(scene, settings, *scheduler);
+    const auto body = make_body(scene, settings_of(variant), *scheduler);
     std::vector<std::uint8_t> asleep(body->nodes(), 0);
     std::fill(asleep.begin() + static_cast<std::ptrdiff_t>(half), asleep.end(), std::uint8_t{1});
     body->hold(10, {1.05, 0.02, 0});

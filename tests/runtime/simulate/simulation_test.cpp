@@ -221,7 +221,7 @@ TEST(Simulation, FramesComeAtTheirRateAndShowConsistentStates) {
             const SurfaceShape& shape = frame.bodies.front();
             ASSERT_EQ(shape.positions.size(), shape.surface->vertices.size());
             for (const Point& normal : shape.normals) {
-                EXPECT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1, 4e-7);  // float
+                EXPECT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1, 1e-12);
             }
             EXPECT_DOUBLE_EQ(shape.time, static_cast<double>(shape.step) * time_step);
             lowest = std::min_element(shape.positions.begin(), shape.positions.end(), [](auto& a, auto& b) {
